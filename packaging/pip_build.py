@@ -1,4 +1,4 @@
-"""What `pip install .` and `pip wheel .` call: builds the mesher with CMake and makes a wheel of the package
+"""Does the work of `pip install .` and `pip wheel .`: builds the mesher with CMake and makes a wheel of the package
 `collarmesh`, of the program and of the modules that they load. Nothing but Python itself is needed for it.
 
 COLLARMESH_BUILD_DIR names a CMake build that is there already; then nothing is compiled. CMAKE_BUILD_PARALLEL_LEVEL
@@ -89,7 +89,7 @@ def compile_package(folder):
 
 
 def packages_needed():
-    """What the program is built with, and what its module is."""
+    """Returns the packages that the program and its module are built with."""
     table = [line.split() for line in (SOURCES / "cmake/packages.txt").read_text().splitlines()]
     return " ".join(name for group, name in (row for row in table if len(row) == 2)
                     if group == "build" or name in ("python3-dev", "pybind11-dev"))

@@ -95,7 +95,7 @@ class Solution:
     values: Array    # values at the nodes, shape (n, k)
     unknowns: int
     energy: float
-    squared_error: Optional[float] = None    # of the error's energy, where the solution is known
+    squared_error: Optional[float] = None    # energy of the error, where the solution is known
 
 
 class Poisson:
@@ -195,7 +195,7 @@ class Problem:
     name: str
     solver: str
     domain: Callable
-    size: float                   # of the first mesh
+    size: float                   # target size of the first mesh
     equation: Poisson | Elasticity
     expected_even: str            # the rate of meshes of equal sizes by theory
 

@@ -48,7 +48,7 @@ class Row:
     step: float = math.nan
     smallest: float = math.nan       # dihedral angles of the tets beside the layers
     largest: float = math.nan
-    seconds: float = math.nan        # of all cores
+    seconds: float = math.nan        # time of all cores
     share: float = math.nan          # percent of the time that layers take
     why: str = ""
     openfoam: str = ""               # the verdict of checkMesh

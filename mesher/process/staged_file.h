@@ -87,7 +87,7 @@ class StagedFiles {
   Process& process_;
   Mutex mutex_;  // guards the following variables
   std::vector<std::string> folders_;
-  Replacement replacement_;  // of the commit in progress
+  Replacement replacement_;  // the files replaced by the commit in progress
   bool committed_ = false;
   bool keep_folders_ = false;  // keep the folders, because their files could not be moved back
 };

@@ -1,4 +1,4 @@
-"""What hostile input and faults of the system must not do: one test for each that once did.
+"""Gives the program hostile input and faults of the system: one test for each that once did harm.
 
 Run by ctest with COLLARMESH_PROGRAM set; each class is one ctest.
 """

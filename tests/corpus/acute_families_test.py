@@ -7,7 +7,7 @@ Every family that ACUTE_SHAPE can write, at set parameters and at random ones. P
 
 The checker knows triangles that share their corners; it knows no facets, no segments and no several files. So it is
 told the same complex as triangles, made of the input alone (acute_shape --triangulated); where they bound solids and
-nothing else it compares volumes and areas, too. What it cannot see is the angle of an edge and a face, nor lone
+nothing else it compares volumes and areas, too. It cannot see the angle of an edge and a face, nor lone
 segments: each end of one that something else touches is told as the acute corner of a triangle nearly without width.
 So the checker accepts collars at such an end whatever the angle there, and none at ends that nothing touches; the
 certificate, which has to hold before the checker is asked, judges the angles there as everywhere.

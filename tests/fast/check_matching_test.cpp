@@ -1,7 +1,7 @@
 // A mesh without feature indices, as files contain it, is matched to the complex by tags and position.
 #include <gtest/gtest.h>
 
-#include "check/subject.h"
+#include "check/mesh_to_check.h"
 #include "support/meshes.h"
 
 namespace collarmesh::check_matching_test {

@@ -6,12 +6,12 @@
 #include <cmath>
 #include <random>
 
-#include "check/orientation.h"
+#include "check/mesh_to_check.h"
 #include "check/polyline.h"
-#include "check/subject.h"
 #include "collarmesh/plc_builder.h"
 #include "collarmesh/tet_mesh.h"
 #include "common/distance_tree.h"
+#include "mesh/orientation.h"
 #include "support/shapes.h"
 
 namespace collarmesh::check_parts_test {

@@ -59,7 +59,7 @@ struct Parts : testing::KnownCurves {
   void split_encroached() {
     WorkQueue::Item item;
     while (queue.first_priority() == WorkQueue::encroached_subsegments && queue.pop(item))
-      if (chains.due(item.entry) && !creator.create_at_subsegment(item.entry.id))
+      if (chains.is_due(item.entry) && !creator.create_at_subsegment(item.entry.id))
         chains.split_ahead(*chains.split_of(item.entry.id));
   }
   // Returns the pieces of a curve as ranges of its parameter, sorted.
@@ -100,7 +100,7 @@ struct Parts : testing::KnownCurves {
   std::set<Index> queued_triangles() {
     std::set<Index> found;
     for (WorkQueue::Item item; queue.pop(item);)
-      if (item.priority == WorkQueue::unresolved_triangles && triangles.due(item.entry))
+      if (item.priority == WorkQueue::unresolved_triangles && triangles.is_due(item.entry))
         found.insert(item.entry.id);
     return found;
   }

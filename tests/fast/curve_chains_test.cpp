@@ -50,8 +50,8 @@ struct Curves : testing::KnownCurves {
     std::size_t splits = 0;
     for (WorkQueue::Item item; queue.pop(item);) {
       if (item.priority == WorkQueue::unresolved_points) {
-        if (points.due(item.entry.id, item.entry.stamp)) resolve(item.entry.id);
-      } else if (chains.due(item.entry)) {
+        if (points.is_due(item.entry.id, item.entry.stamp)) resolve(item.entry.id);
+      } else if (chains.is_due(item.entry)) {
         const auto split = chains.split_of(item.entry.id);
         if (!split || split->candidate.start == none) return none;
         if (item.priority == WorkQueue::encroached_subsegments)
@@ -72,7 +72,7 @@ struct Curves : testing::KnownCurves {
   std::size_t queued(WorkQueue::Priority priority) {
     std::set<Index> found;
     for (WorkQueue::Item item; queue.pop(item);)
-      if (item.priority == priority && chains.due(item.entry)) found.insert(item.entry.id);
+      if (item.priority == priority && chains.is_due(item.entry)) found.insert(item.entry.id);
     return found.size();
   }
   Point end_of(const Subsegment& s, unsigned side) const {
@@ -177,7 +177,7 @@ TEST(CurveChains, WhatAVertexEncroachesIsSplitAheadOfTheMesh) {
   WorkQueue::Item item;
   std::size_t splits = 0;
   for (; curves.queue.first_priority() == WorkQueue::encroached_subsegments; ++splits) {
-    if (curves.queue.pop(item) && curves.chains.due(item.entry))
+    if (curves.queue.pop(item) && curves.chains.is_due(item.entry))
       curves.chains.split_ahead(*curves.chains.split_of(item.entry.id));
   }
   EXPECT_GT(splits, 3U);

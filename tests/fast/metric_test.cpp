@@ -10,7 +10,7 @@ namespace {
 
 using remeshing::Metric;
 
-constexpr Vector edge{2, 3, 6};  // of length 7
+constexpr Vector edge{2, 3, 6};  // has length 7
 
 TEST(Metric, MeasuresEdgesByTheMeanOfTheirEnds) {
   Metric metric({2, 5, 4, 3});

@@ -164,7 +164,7 @@ TEST(PlcFacets, CollinearTrianglesAreReplacedByCuts) {
 
 // A triangle without area whose long side is also a segment.
 TEST(CollinearTriangles, SegmentsAreCutLikeTheEdges) {
-  facets::Draft draft;
+  facets::ComplexDraft draft;
   draft.points = {{0, 0, 0}, {4, 0, 0}, {1, 0, 0}, {3, 0, 0}, {2, 2, 0}};
   draft.add_triangle({0, 1, 2}, {});
   draft.add_triangle({2, 1, 3}, {});

@@ -23,8 +23,8 @@ namespace {
 
 // Makes a grid of n x n squares, each cut in two; `height` returns the height at a point.
 template <class Height>
-Draft terrain(Index n, const Height& height) {
-  Draft draft;
+ComplexDraft terrain(Index n, const Height& height) {
+  ComplexDraft draft;
   for (Index i = 0; i <= n; ++i)
     for (Index j = 0; j <= n; ++j)
       draft.points.push_back({static_cast<double>(i), static_cast<double>(j), height(i, j)});
@@ -41,7 +41,7 @@ Draft terrain(Index n, const Height& height) {
   return draft;
 }
 
-void expect_table_of(const Draft& draft, const EdgeTable& edges) {
+void expect_table_of(const ComplexDraft& draft, const EdgeTable& edges) {
   const EdgeTable expected(draft.triangles, draft.points.size());
   ASSERT_EQ(edges.size(), expected.size());
   for (Index e = 0; e < edges.size(); ++e) {
@@ -53,7 +53,7 @@ void expect_table_of(const Draft& draft, const EdgeTable& edges) {
 }
 
 TEST(EdgeTable, FollowsTurnedTriangles) {
-  Draft draft = terrain(6, [](Index, Index) { return 0.0; });
+  ComplexDraft draft = terrain(6, [](Index, Index) { return 0.0; });
   // Several triangles on one edge, and reversed ones beside others.
   draft.add_triangle({0, 8, 20}, {});
   draft.add_triangle({8, 0, 30}, {});
@@ -68,7 +68,7 @@ TEST(EdgeTable, FollowsTurnedTriangles) {
 }
 
 TEST(EdgeTable, IsThatOfTheOrientedTriangles) {
-  Draft draft = terrain(8, [](Index i, Index j) { return 0.1 * i * j; });
+  ComplexDraft draft = terrain(8, [](Index i, Index j) { return 0.1 * i * j; });
   std::mt19937 random(2);
   for (Corners& t : draft.triangles)
     if (random() % 3 == 0) std::swap(t[1], t[2]);
@@ -86,7 +86,7 @@ TEST(EdgeTable, IsThatOfTheOrientedTriangles) {
 
 // The other soup's triangles on the same edges do not affect the orientation of this soup's.
 TEST(Orientation, LooksAtTheSidesOfItsSoupOnly) {
-  Draft draft = terrain(4, [](Index, Index) { return 0.0; });
+  ComplexDraft draft = terrain(4, [](Index, Index) { return 0.0; });
   const std::size_t count = draft.triangles.size();
   for (std::size_t t = 0; t < count; ++t) {
     Origin other = draft.origins[t];
@@ -105,7 +105,7 @@ TEST(Orientation, LooksAtTheSidesOfItsSoupOnly) {
 
 // Finds seeds by their definition: triangles, the largest first, collect their neighbours in their plane or
 // facet, and the neighbours of these.
-std::vector<Index> seeds_one_by_one(const Draft& draft, const EdgeTable& edges) {
+std::vector<Index> seeds_one_by_one(const ComplexDraft& draft, const EdgeTable& edges) {
   const auto side = [&](Index t, unsigned i) { return draft.corner(t, (i + 1) % 3) - draft.corner(t, i); };
   const auto area = [&](Index t) {
     return 0.5 *
@@ -150,11 +150,11 @@ std::vector<Index> seeds_one_by_one(const Draft& draft, const EdgeTable& edges) 
 
 // Grids with points off their places, heights of a few tolerances or none, needles, and facets of two
 // triangles.
-Draft random_terrain(std::uint32_t seed) {
+ComplexDraft random_terrain(std::uint32_t seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> unit(-1, 1);
   const double tolerance = seed % 4 == 0 ? 0 : 0.01, roughness = std::pow(10, unit(random));
-  Draft draft = terrain(9, [&](Index, Index) {
+  ComplexDraft draft = terrain(9, [&](Index, Index) {
     return tolerance > 0 ? roughness * tolerance * unit(random) : (random() % 4 == 0 ? 0.5 : 0.0);
   });
   for (Point& p : draft.points) {
@@ -170,7 +170,7 @@ Draft random_terrain(std::uint32_t seed) {
 TEST(FlatClusters, AreThoseOfTheirDefinition) {
   std::size_t clusters = 0, triangles = 0;
   for (std::uint32_t seed = 0; seed < 200; ++seed) {
-    const Draft draft = random_terrain(seed);
+    const ComplexDraft draft = random_terrain(seed);
     const EdgeTable edges(draft.triangles, draft.points.size());
     const auto seeds = find_flat_clusters(draft, edges).seed;
     ASSERT_EQ(seeds, seeds_one_by_one(draft, edges)) << seed;

@@ -48,7 +48,8 @@ struct Judges : KnownMesh {
     for (WorkQueue::Item item; queue.pop(item);) {
       const bool is_cell =
           item.priority == WorkQueue::skinny_cells || item.priority == WorkQueue::large_cells;
-      if (is_cell ? cells.due(item) : triangles.due(item.entry)) found[item.priority].insert(item.entry.id);
+      if (is_cell ? cells.is_due(item) : triangles.is_due(item.entry))
+        found[item.priority].insert(item.entry.id);
     }
     return found;
   }
@@ -143,9 +144,9 @@ TEST(RefineTriangleQuality, UnresolvedTrianglesAreQueuedUntilTheyAreGivenUp) {
     EXPECT_TRUE(due[WorkQueue::unresolved_triangles].contains(face) ||
                 due[WorkQueue::unresolved_triangles].contains(judges.mesh.opposite(face)));
   const WorkQueue::Entry entry{faces[0], judges.mesh.generation(cell_of(faces[0]))};
-  EXPECT_TRUE(judges.triangles.due(entry));
+  EXPECT_TRUE(judges.triangles.is_due(entry));
   judges.triangles.give_up(faces[0]);
-  EXPECT_FALSE(judges.triangles.due(entry));
+  EXPECT_FALSE(judges.triangles.is_due(entry));
   judges.triangles.split(faces[0]);
   EXPECT_TRUE(judges.due()[WorkQueue::unresolved_triangles].empty());
   judges.triangles.split(faces[1]);

@@ -31,7 +31,7 @@ std::array<PolygonSoup, 2> boxes_nearly_in_contact(std::size_t axis) {
   return boxes;
 }
 
-std::set<double> coordinates_near(const Draft& draft, std::size_t axis, double place) {
+std::set<double> coordinates_near(const ComplexDraft& draft, std::size_t axis, double place) {
   std::set<double> found;
   for (const Point& p : draft.points)
     if (std::fabs(p[axis] - place) < 0.1) found.insert(p[axis]);
@@ -40,7 +40,7 @@ std::set<double> coordinates_near(const Draft& draft, std::size_t axis, double p
 
 TEST(AxisPlanes, FacetsThatNearlyCoincideComeOntoThePlaneOfMostOfThem) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    Draft draft = draft_of(boxes_nearly_in_contact(axis));
+    ComplexDraft draft = draft_of(boxes_nearly_in_contact(axis));
     const std::vector<Point> before = draft.points;
     const FlattenReport report = flatten_axis_planes(draft, 1e-5);
     EXPECT_EQ(coordinates_near(draft, axis, 1).size(), 1U) << axis;
@@ -54,7 +54,7 @@ TEST(AxisPlanes, FacetsThatNearlyCoincideComeOntoThePlaneOfMostOfThem) {
 }
 
 TEST(AxisPlanes, FacetsFartherApartThanTheToleranceStay) {
-  Draft draft = draft_of(boxes_nearly_in_contact(2));
+  ComplexDraft draft = draft_of(boxes_nearly_in_contact(2));
   const std::vector<Point> before = draft.points;
   const FlattenReport report = flatten_axis_planes(draft, 5e-7);
   EXPECT_EQ(coordinates_near(draft, 2, 1).size(), 2U);  // the noise of the second box is gone
@@ -63,16 +63,16 @@ TEST(AxisPlanes, FacetsFartherApartThanTheToleranceStay) {
 
 TEST(AxisPlanes, ThinPartsAndGivenVerticesStay) {
   const PolygonSoup thin = testing::box({0, 0, 0}, {1, 1, 1e-6});
-  Draft plate = draft_of(thin);
+  ComplexDraft plate = draft_of(thin);
   EXPECT_EQ(flatten_axis_planes(plate, 1e-5).moved_points, 0U);
-  Draft draft = draft_of(boxes_nearly_in_contact(2));
+  ComplexDraft draft = draft_of(boxes_nearly_in_contact(2));
   for (Index p = 0; p < draft.points.size(); ++p) draft.loose_points.push_back(p);
   EXPECT_EQ(flatten_axis_planes(draft, 1e-5).moved_points, 0U);
 }
 
 // A fine dome: its facets near the top are nearly perpendicular to the axis, but not flat.
 TEST(AxisPlanes, SlopesStay) {
-  Draft draft = draft_of(testing::icosphere(1, 40));
+  ComplexDraft draft = draft_of(testing::icosphere(1, 40));
   EXPECT_EQ(flatten_axis_planes(draft, 1e-3).moved_points, 0U);
 }
 

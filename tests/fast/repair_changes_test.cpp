@@ -27,15 +27,15 @@ using testing::faulty::with_moved_corners;
 TEST(Changes, SegmentsAreThoseOfTheirPlaces) {
   const std::vector<PolygonSoup> soups{polygonal_box({0, 0, 0}, {1, 1, 1}),
                                        polygonal_box({5, 0, 0}, {6, 1, 1})};
-  Draft before = draft_of(soups);
-  const auto at = [](const Draft& draft, const Point& p) {
+  ComplexDraft before = draft_of(soups);
+  const auto at = [](const ComplexDraft& draft, const Point& p) {
     return static_cast<Index>(std::ranges::find(draft.points, p) - draft.points.begin());
   };
-  const auto add = [&](Draft& draft, const Point& a, const Point& b, Tag tag) {
+  const auto add = [&](ComplexDraft& draft, const Point& a, const Point& b, Tag tag) {
     draft.segments.push_back({.a = at(draft, a), .b = at(draft, b), .tag = tag});
   };
-  Draft after = with_moved_corners(before);
-  for (Draft* const draft : {&before, &after}) {
+  ComplexDraft after = with_moved_corners(before);
+  for (ComplexDraft* const draft : {&before, &after}) {
     const bool moved = draft == &after;
     add(*draft, moved ? Point{0, 0.1, 0.2} : Point{0, 0, 0}, {1, 0, 0}, 1);
     add(*draft, moved ? Point{6, 0.1, 0.2} : Point{6, 0, 0}, {5, 0, 0}, 2);
@@ -48,7 +48,7 @@ TEST(Changes, SegmentsAreThoseOfTheirPlaces) {
   for (const bool first : {false, true})
     for (const bool second : {false, true}) {
       std::vector<Index> place;
-      const Draft mixed = changes.without({first, second}, place);
+      const ComplexDraft mixed = changes.without({first, second}, place);
       ASSERT_EQ(mixed.segments.size(), 3U);
       std::size_t at_old = 0;
       for (const Tag tag : {1, 2, 3}) {
@@ -73,7 +73,7 @@ TEST(Changes, SegmentsAreThoseOfTheirPlaces) {
 // ChangingTriangles
 
 /// Expects the lists of sides that a search through all triangles finds.
-void expect_lists(const ChangingTriangles& triangles, const Draft& draft) {
+void expect_lists(const ChangingTriangles& triangles, const ComplexDraft& draft) {
   std::vector<std::set<Index>> at(draft.points.size());
   std::size_t count = 0;
   for (Index t = 0; t < triangles.end(); ++t) {
@@ -95,7 +95,7 @@ void expect_lists(const ChangingTriangles& triangles, const Draft& draft) {
 
 TEST(ChangingTriangles, ListsAreThoseOfASearchThroughAll) {
   std::mt19937 random(3);
-  Draft draft = draft_of(testing::icosphere(1, 3));
+  ComplexDraft draft = draft_of(testing::icosphere(1, 3));
   Work work;
   ChangingTriangles triangles(draft, 0.01, work);
   expect_lists(triangles, draft);
@@ -128,7 +128,7 @@ TEST(ChangingTriangles, ListsAreThoseOfASearchThroughAll) {
       }
       EXPECT_EQ(triangles.sides(edge).size(), sides.size());
     }
-  const Draft compacted = triangles.compacted();
+  const ComplexDraft compacted = triangles.compacted();
   EXPECT_EQ(compacted.triangles.size(), triangles.count());
 }
 

@@ -16,11 +16,11 @@
 #include "repair/arrangement.h"
 #include "repair/better_places.h"
 #include "repair/changes.h"
+#include "repair/duplicate_triangles.h"
 #include "repair/holes.h"
 #include "repair/inside.h"
 #include "repair/repeated.h"
 #include "repair/snapping.h"
-#include "repair/twins.h"
 #include "repair/winding_number.h"
 #include "support/repair_drafts.h"
 #include "support/repair_shapes.h"
@@ -33,14 +33,14 @@ namespace {
 using namespace facets;
 using namespace testing::faulty;
 
-double volume_of(const Draft& draft) {
+double volume_of(const ComplexDraft& draft) {
   double six = 0;
   for (Index t = 0; t < draft.triangles.size(); ++t)
     six += dot(draft.corner(t, 0), cross(draft.corner(t, 1), draft.corner(t, 2)));
   return six / 6;
 }
 
-double area_of(const Draft& draft) {
+double area_of(const ComplexDraft& draft) {
   double twice = 0;
   for (Index t = 0; t < draft.triangles.size(); ++t)
     twice += norm(cross(draft.corner(t, 1) - draft.corner(t, 0), draft.corner(t, 2) - draft.corner(t, 0)));
@@ -57,7 +57,7 @@ struct MeetingPoints : boost::static_visitor<std::vector<Exact::Point_3>> {
 };
 
 // Returns the number of pairs of triangles that meet in more than a common corner or edge and are no copies.
-std::size_t brute_force_intersections(const Draft& draft) {
+std::size_t brute_force_intersections(const ComplexDraft& draft) {
   std::vector<Exact::Triangle_3> triangles;
   for (Index t = 0; t < draft.triangles.size(); ++t) {
     std::array<Exact::Point_3, 3> p;
@@ -144,7 +144,7 @@ TEST(WindingNumber, OnATriangleLeftOutIsTheMeanOfItsSides) {
 
 // arrange
 
-Draft pair_of(const std::array<Point, 3>& a, const std::array<Point, 3>& b, bool two_soups = false) {
+ComplexDraft pair_of(const std::array<Point, 3>& a, const std::array<Point, 3>& b, bool two_soups = false) {
   std::array<PolygonSoup, 2> soups;
   const std::array<std::array<Point, 3>, 2> triangles{a, b};
   for (std::size_t i = 0; i < 2; ++i) {
@@ -156,7 +156,7 @@ Draft pair_of(const std::array<Point, 3>& a, const std::array<Point, 3>& b, bool
 }
 
 // Returns areas by tag, which cutting must not change.
-std::map<Tag, double> areas(const Draft& draft) {
+std::map<Tag, double> areas(const ComplexDraft& draft) {
   std::map<Tag, double> result;
   for (Index t = 0; t < draft.triangles.size(); ++t)
     result[draft.origins[t].tag] +=
@@ -164,7 +164,7 @@ std::map<Tag, double> areas(const Draft& draft) {
   return result;
 }
 
-void expect_arranged(Draft draft, bool meets, double slack = 1e-12) {
+void expect_arranged(ComplexDraft draft, bool meets, double slack = 1e-12) {
   const auto before = areas(draft);
   const ArrangementReport report = arrange(draft, 0);
   EXPECT_TRUE(report.clean);
@@ -224,7 +224,7 @@ TEST(Arrangement, CopiesStay) {
   const std::array<Point, 3> a{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}},
       turned_a{{{0, 0, 0}, {0, 4, 0}, {4, 0, 0}}};
   for (const auto& b : {a, turned_a}) {
-    Draft draft = pair_of(a, b);
+    ComplexDraft draft = pair_of(a, b);
     EXPECT_TRUE(arrange(draft, 0).clean);
     EXPECT_EQ(draft.triangles.size(), 2U);
   }
@@ -251,7 +251,7 @@ TEST(Arrangement, RandomPairsAndHandfuls) {
       soup.add_facet(std::array<Index, 3>{0, 1, 2}, 1 + static_cast<Tag>(i));
       soups.push_back(soup);
     }
-    Draft draft = draft_of(joined(soups));
+    ComplexDraft draft = draft_of(joined(soups));
     const auto before = areas(draft);
     EXPECT_TRUE(arrange(draft, 0).clean);
     EXPECT_EQ(brute_force_intersections(draft), 0U);
@@ -276,7 +276,7 @@ TEST(Arrangement, EndsWhereSheetsNearlyCoincide) {
       }
       soups.push_back(sphere);
     }
-    Draft draft = draft_of(joined(soups));
+    ComplexDraft draft = draft_of(joined(soups));
     const ArrangementReport arranged =
         arrange(draft, grain * angle, nullptr, true, KeptMerges::where_nothing_meets);
     EXPECT_TRUE(arranged.clean);
@@ -288,13 +288,13 @@ TEST(Arrangement, EndsWhereSheetsNearlyCoincide) {
 // snap_near_features
 
 // Returns whether each soup uses every edge equally often in both directions.
-bool balanced(const Draft& draft) { return count_open_edges(draft) == 0; }
+bool balanced(const ComplexDraft& draft) { return count_open_edges(draft) == 0; }
 
 TEST(Snapping, ClosesTJunctionsThatAreOpen) {
   Random random(4);
   for (unsigned member = 0; member < members(30); ++member) {
     SCOPED_TRACE(member);
-    Draft draft = draft_of(turned(box_with_t_junctions(random, 2 + member % 4), random));
+    ComplexDraft draft = draft_of(turned(box_with_t_junctions(random, 2 + member % 4), random));
     EXPECT_FALSE(balanced(draft));
     const double before = volume_of(draft);
     snap_near_features(draft, 1e-6, member % 2 == 0 ? SnapWhat::borders : SnapWhat::all);
@@ -315,7 +315,7 @@ TEST(Snapping, KeepsClosedSurfacesClosed) {
       case 2: soup = turned(spiked_box(uniform(random, 0, 2) * distance_limit), random); break;
       default: soup = testing::icosphere(1, 6);
     }
-    Draft draft = draft_of(soup);
+    ComplexDraft draft = draft_of(soup);
     ASSERT_TRUE(balanced(draft));
     const double before = volume_of(draft);
     const SnapReport report = snap_near_features(draft, distance_limit);
@@ -329,7 +329,7 @@ TEST(Snapping, LeavesWhatIsFarApart) {
   Random random(6);
   for (const PolygonSoup& soup :
        {testing::box(), testing::icosphere(1, 5), testing::torus(1, 0.3, 20, 10), finned_box(0.1)}) {
-    Draft draft = draft_of(turned(soup, random));
+    ComplexDraft draft = draft_of(turned(soup, random));
     const auto triangles = draft.triangles;
     const auto points = draft.points;
     EXPECT_FALSE(snap_near_features(draft, 1e-5).changed());
@@ -339,7 +339,7 @@ TEST(Snapping, LeavesWhatIsFarApart) {
 }
 
 // Returns the number of corners that are closer than the limit to others, or to edges that they do not end.
-std::size_t near_corners(const Draft& draft, double limit) {
+std::size_t near_corners(const ComplexDraft& draft, double limit) {
   std::size_t count = 0;
   std::set<Index> used;
   for (const Corners& t : draft.triangles) used.insert(t.begin(), t.end());
@@ -357,8 +357,8 @@ std::size_t near_corners(const Draft& draft, double limit) {
   return count;
 }
 
-Draft arranged_spheres(Random& random) {
-  Draft draft = draft_of(
+ComplexDraft arranged_spheres(Random& random) {
+  ComplexDraft draft = draft_of(
       joined(std::array{turned(testing::icosphere(1, 3), random),
                         testing::translated(turned(testing::icosphere(1, 3), random), {0.5, 0.2, 0})}));
   EXPECT_TRUE(arrange(draft, 0).clean);
@@ -372,7 +372,7 @@ TEST(Snapping, LeavesLittleNear) {
       testing::sanitized ? 4 : 20;  // few spheres prove nothing about the share that settles
   std::size_t before = 0, after = 0;
   for (unsigned member = 0; member < spheres; ++member) {
-    Draft draft = arranged_spheres(random);
+    ComplexDraft draft = arranged_spheres(random);
     before += near_corners(draft, 0.99e-3);
     snap_near_features(draft, 1e-3);
     after += near_corners(draft, 0.99e-3);
@@ -388,7 +388,7 @@ TEST(Snapping, BringsNothingNear) {
   Random random(7);
   unsigned spoiled = 0;
   for (unsigned member = 0; member < members(20); ++member) {
-    Draft draft = arranged_spheres(random);
+    ComplexDraft draft = arranged_spheres(random);
     snap_near_features(draft, 1e-5);
     spoiled += near_corners(draft, 0.99e-5) > 0 ? 1 : 0;
   }
@@ -410,7 +410,7 @@ TEST(Snapping, WorkGrowsWithCornersAndEdges) {
     };
     fan({0, 0, 1e-4}, [](double x) { return Point{std::cos(6 * x), std::sin(6 * x), 0.5}; });
     fan({-2, 0, 0}, [](double x) { return Point{2, 0.001 * (x - 0.5), 0}; });
-    Draft draft = draft_of({&soup, 1}, true);
+    ComplexDraft draft = draft_of({&soup, 1}, true);
     const Execution execution;
     constexpr std::size_t most = 1'000'000'000;
     Work work(most, execution);
@@ -439,7 +439,7 @@ TEST(Snapping, IsTakenBackOnlyWhereItDoesNotSettle) {
                      {{50, 0, 0}, {51, 0, 0}, {50, 1, 0}, {50, 0, 0.1 * limit}, {49, 0, 2}, {49, 1, 3}});
   soup.add_facet(std::array<Index, 3>{first, first + 1, first + 2}, 1);
   soup.add_facet(std::array<Index, 3>{first + 3, first + 4, first + 5}, 1);
-  Draft draft = draft_of({&soup, 1}, true);
+  ComplexDraft draft = draft_of({&soup, 1}, true);
   const std::vector<Corners> before(draft.triangles.begin(), draft.triangles.begin() + needles);
   const SnapReport report = snap_near_features(draft, limit);
   EXPECT_EQ(report.changes(), 1U);
@@ -449,15 +449,15 @@ TEST(Snapping, IsTakenBackOnlyWhereItDoesNotSettle) {
     EXPECT_NE(std::find(draft.triangles.begin(), draft.triangles.end(), t), draft.triangles.end());
 }
 
-TEST(Snapping, CancelsTwins) {
+TEST(Snapping, CancelsDuplicates) {
   const PolygonSoup ball = testing::icosphere(1, 2);
-  Draft draft = draft_of(joined(std::array{ball, testing::inverted(ball), ball}));
+  ComplexDraft draft = draft_of(joined(std::array{ball, testing::inverted(ball), ball}));
   EXPECT_EQ(draft.triangles.size(), 3U * ball.facet_count());
-  EXPECT_EQ(cancel_twins(draft), 2U * ball.facet_count());
+  EXPECT_EQ(cancel_duplicates(draft), 2U * ball.facet_count());
   EXPECT_NEAR(volume_of(draft), signed_volume(ball), 1e-12);
-  // Twins of different soups stay.
-  Draft two = draft_of(std::array{ball, testing::inverted(ball)});
-  EXPECT_EQ(cancel_twins(two), 0U);
+  // Duplicates of different soups stay.
+  ComplexDraft two = draft_of(std::array{ball, testing::inverted(ball)});
+  EXPECT_EQ(cancel_duplicates(two), 0U);
 }
 
 // drop_repeated
@@ -467,7 +467,7 @@ TEST(Repeated, FacetsAreDropped) {
   for (unsigned member = 0; member < members(20); ++member) {
     const auto count = static_cast<unsigned>(1 + random() % 8);
     const PolygonSoup ball = testing::icosphere(1, 3);
-    Draft draft = draft_of(with_repeated_facets(ball, random, count, false));
+    ComplexDraft draft = draft_of(with_repeated_facets(ball, random, count, false));
     const RepeatedReport report = drop_repeated(draft);
     EXPECT_EQ(report.count, count);
     EXPECT_EQ(report.where.size(), count);
@@ -478,7 +478,7 @@ TEST(Repeated, FacetsAreDropped) {
 
 TEST(Repeated, ACopyOfAWholeSurfaceIsDropped) {
   const PolygonSoup ball = testing::icosphere(1, 2);
-  Draft draft = draft_of(joined(std::array{ball, ball}));
+  ComplexDraft draft = draft_of(joined(std::array{ball, ball}));
   const auto report = drop_repeated(draft);
   EXPECT_TRUE(balanced(draft));
   EXPECT_TRUE(report.count == 0 || draft.triangles.size() == ball.facet_count());
@@ -486,9 +486,9 @@ TEST(Repeated, ACopyOfAWholeSurfaceIsDropped) {
 
 TEST(Repeated, ThoseOfOtherSoupsAndOrientationsStay) {
   const PolygonSoup ball = testing::icosphere(1, 2);
-  Draft two = draft_of(std::array{ball, ball});
+  ComplexDraft two = draft_of(std::array{ball, ball});
   EXPECT_EQ(drop_repeated(two).count, 0U);
-  Draft inverted = draft_of(joined(std::array{ball, testing::inverted(ball)}));
+  ComplexDraft inverted = draft_of(joined(std::array{ball, testing::inverted(ball)}));
   EXPECT_EQ(drop_repeated(inverted).count, 0U);
   EXPECT_EQ(inverted.triangles.size(), 2U * ball.facet_count());
 }
@@ -500,7 +500,7 @@ TEST(Holes, AreFilledWithATagOfTheirOwn) {
   for (unsigned member = 0; member < members(20); ++member) {
     SCOPED_TRACE(member);
     const OpenSphere open = sphere_with_holes(random, 8, 1 + member % 5);
-    Draft draft = draft_of(open.soup);
+    ComplexDraft draft = draft_of(open.soup);
     std::size_t around = 0;
     for (const std::size_t edges : open.edges) around += edges;
     EXPECT_EQ(count_open_edges(draft), around);
@@ -521,7 +521,7 @@ TEST(Holes, OfAPlaneSideHaveItsArea) {
   Random random(10);
   for (Tag side = 1; side <= 6; ++side) {
     const PolygonSoup cube = testing::box({0, 0, 0}, {1, 1, 1}, 3);
-    Draft draft = draft_of(filtered(cube, [&](Index f) { return cube.facet_tag(f) != side; }));
+    ComplexDraft draft = draft_of(filtered(cube, [&](Index f) { return cube.facet_tag(f) != side; }));
     const auto filled = fill_holes(draft, 7);
     ASSERT_EQ(filled.size(), 1U);
     EXPECT_EQ(filled[0].edges, 12U);
@@ -534,7 +534,7 @@ TEST(Holes, OfAPlaneSideHaveItsArea) {
 }
 
 // Returns the facets and holes by their coordinates.
-std::map<std::array<std::array<double, 3>, 3>, Tag> facets_by_place(const Draft& draft) {
+std::map<std::array<std::array<double, 3>, 3>, Tag> facets_by_place(const ComplexDraft& draft) {
   std::map<std::array<std::array<double, 3>, 3>, Tag> facets;
   for (Index t = 0; t < draft.triangles.size(); ++t) {
     std::array<std::array<double, 3>, 3> key;
@@ -553,12 +553,12 @@ TEST(Holes, DoNotDependOnTheOrderOfFacets) {
     SCOPED_TRACE(member);
     const PolygonSoup ball = jittered(testing::icosphere(1, 6), random, 0.01);
     const PolygonSoup open = filtered(ball, [&](Index) { return random() % 12 != 0; });
-    Draft draft = draft_of(open);
+    ComplexDraft draft = draft_of(open);
     const std::size_t holes = fill_holes(draft, 7).size();
     ASSERT_GT(holes, 1U);
     const auto expected = facets_by_place(draft);
     for (std::uint32_t seed = 1; seed <= 4; ++seed) {
-      Draft other = draft_of(corners_rotated(testing::permuted(open, seed), random));
+      ComplexDraft other = draft_of(corners_rotated(testing::permuted(open, seed), random));
       EXPECT_EQ(fill_holes(other, 7).size(), holes);
       EXPECT_EQ(facets_by_place(other), expected);
     }
@@ -569,7 +569,7 @@ TEST(Holes, SheetsAreNoHoles) {
   PolygonSoup sheet;
   sheet.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
   sheet.add_facet(std::array<Index, 4>{0, 1, 2, 3}, 1);
-  Draft draft = draft_of(sheet);
+  ComplexDraft draft = draft_of(sheet);
   EXPECT_TRUE(fill_holes(draft, 7).empty());
   EXPECT_EQ(draft.triangles.size(), 2U);
 }
@@ -593,7 +593,7 @@ PolygonSoup two_sided_box() {
 
 TEST(KeepOneSide, OfABoxIsTheBox) {
   const PolygonSoup soup = two_sided_box();
-  Draft draft = draft_of(soup);
+  ComplexDraft draft = draft_of(soup);
   EXPECT_TRUE(is_two_sided(draft));
   arrange(draft, 0, nullptr, false);
   const std::size_t both = draft.triangles.size();
@@ -643,7 +643,7 @@ TEST(KeepOneSide, SheetsAreLeft) {
   pillow.add_facet(std::array<Index, 3>{0, 2, 3}, 1);
   pillow.add_facet(std::array<Index, 3>{3, 2, 0}, 1);
   pillow.add_facet(std::array<Index, 3>{2, 1, 0}, 1);
-  Draft draft = draft_of(pillow);
+  ComplexDraft draft = draft_of(pillow);
   EXPECT_EQ(keep_one_side(draft), 0U);
   EXPECT_EQ(draft.triangles.size(), 4U);
 }
@@ -654,7 +654,7 @@ TEST(DropFlakes, WhatIsThinAndSmallGoes) {
     return testing::translated(soup_of({{0, 0, 0}, {width, width, thickness}}), {2, 0, 0});
   };
   const auto dropped = [&](const std::vector<PolygonSoup>& soups) {
-    Draft draft = draft_of(joined(soups));
+    ComplexDraft draft = draft_of(joined(soups));
     const double before = volume_of(draft);
     const FlakeReport report = drop_flakes(draft, 1e-3);
     EXPECT_NEAR(volume_of(draft), before - report.volume, 1e-12);
@@ -671,8 +671,8 @@ TEST(DropFlakes, WhatIsThinAndSmallGoes) {
 // Two boxes far apart, each with one corner moved: the change at either place can be undone alone.
 TEST(Changes, ArePlacesThatCanBeTakenBackAlone) {
   const std::vector<PolygonSoup> soups{soup_of({{0, 0, 0}, {1, 1, 1}}), soup_of({{5, 0, 0}, {6, 1, 1}})};
-  const Draft before = draft_of(joined(soups));
-  const Draft after = with_moved_corners(before);
+  const ComplexDraft before = draft_of(joined(soups));
+  const ComplexDraft after = with_moved_corners(before);
   const Changes changes(before, after);
   ASSERT_EQ(changes.places(), 2U);
   const double whole = volume_of(before), less = volume_of(after);
@@ -681,7 +681,7 @@ TEST(Changes, ArePlacesThatCanBeTakenBackAlone) {
   EXPECT_NEAR(volume_of(changes.without({true, true}, place)), whole, 1e-12);
   std::vector<double> volumes;
   for (const bool first : {false, true}) {
-    const Draft mixed = changes.without({first, !first}, place);
+    const ComplexDraft mixed = changes.without({first, !first}, place);
     EXPECT_EQ(mixed.triangles.size(), 24U);
     EXPECT_TRUE(balanced(mixed));
     volumes.push_back(volume_of(mixed));
@@ -694,8 +694,8 @@ TEST(Changes, ArePlacesThatCanBeTakenBackAlone) {
 // The same boxes: the corner whose move causes trouble moves back; the other one stays moved.
 TEST(Changes, ThatMakeTroubleAreTakenBack) {
   const std::vector<PolygonSoup> soups{soup_of({{0, 0, 0}, {1, 1, 1}}), soup_of({{5, 0, 0}, {6, 1, 1}})};
-  const Draft before = draft_of(joined(soups));
-  const Draft after = with_moved_corners(before);
+  const ComplexDraft before = draft_of(joined(soups));
+  const ComplexDraft after = with_moved_corners(before);
   const double whole = volume_of(before), less = volume_of(after);
   const Trouble first{{0, 0.1, 0.2}, 3}, second{{6, 0.1, 0.2}, 3}, worse{{6, 0, 0}, 5},
       elsewhere{{3, 3, 3}, 50};
@@ -719,10 +719,10 @@ TEST(Changes, ThatMakeFacetsMeetAreTakenBack) {
   std::vector<PolygonSoup> soups{soup_of({{0, 0, 0}, {1, 1, 1}}), soup_of({{5, 0, 0}, {6, 1, 1}})};
   for (const bool with_sheet : {false, true}) {
     if (with_sheet) soups.push_back(sheet);
-    const Draft before = draft_of(joined(soups));
-    const Draft after = with_moved_corners(before);
+    const ComplexDraft before = draft_of(joined(soups));
+    const ComplexDraft after = with_moved_corners(before);
     std::vector<bool> taken_back(2, false);
-    const Draft mixed = without_what_meets(Changes(before, after), taken_back);
+    const ComplexDraft mixed = without_what_meets(Changes(before, after), taken_back);
     EXPECT_EQ(std::count(taken_back.begin(), taken_back.end(), true), with_sheet ? 1 : 0);
     EXPECT_EQ(brute_force_intersections(mixed), 0U);
     EXPECT_LT(volume_of(mixed), volume_of(before) - 0.01);
@@ -738,7 +738,7 @@ TEST(TurnComponents, WhatIsInsideOutIsTurned) {
   const PolygonSoup ball = testing::icosphere(1, 2), small = testing::icosphere(0.4, 2);
   const double large = signed_volume(ball), little = signed_volume(small);
   const auto turned_volume = [](const std::vector<PolygonSoup>& soups, std::size_t turned) {
-    Draft draft = draft_of(joined(soups));
+    ComplexDraft draft = draft_of(joined(soups));
     EXPECT_EQ(turn_components(draft).turned_components, turned);
     return volume_of(draft);
   };
@@ -763,10 +763,10 @@ TEST(KeepBoundaries, OfLatticeBoxesIsTheBoundaryOfTheirUnion) {
     std::vector<PolygonSoup> soups;
     for (const Box& box : boxes) soups.push_back(soup_of(box));
     // All in one soup.
-    Draft one = draft_of(joined(soups));
+    ComplexDraft one = draft_of(joined(soups));
     // Clusters without any tangle stay as they are, so all of them must be tangled to be compared.
     const bool meet = arrange(one, 0).intersecting_pairs > 0;
-    cancel_twins(one);
+    cancel_duplicates(one);
     const InsideReport report = keep_boundaries(one, 0);
     EXPECT_TRUE(balanced(one));
     double all = 0;
@@ -779,7 +779,7 @@ TEST(KeepBoundaries, OfLatticeBoxesIsTheBoundaryOfTheirUnion) {
       EXPECT_EQ(report.removed_triangles, 0U);
     }
     // In several soups.
-    Draft several = draft_of(soups);
+    ComplexDraft several = draft_of(soups);
     const bool touch = arrange(several, 0).intersecting_pairs > 0;
     keep_boundaries(several, 0);
     EXPECT_TRUE(balanced(several));
@@ -792,7 +792,7 @@ TEST(KeepBoundaries, OfLatticeBoxesIsTheBoundaryOfTheirUnion) {
 TEST(KeepBoundaries, CleanSurfacesStay) {
   for (const PolygonSoup& soup :
        {testing::box(), testing::icosphere(1, 3), nested_spheres(0.5, false, true)}) {
-    Draft draft = draft_of(soup);
+    ComplexDraft draft = draft_of(soup);
     const auto before = draft.triangles;
     keep_boundaries(draft, 0);
     EXPECT_EQ(draft.triangles, before);
@@ -800,7 +800,7 @@ TEST(KeepBoundaries, CleanSurfacesStay) {
 }
 
 TEST(KeepBoundaries, WallInsideStaysAndOutsideGoes) {
-  Draft draft = draft_of(box_with_wall(0.5, 0.5, 0.25));
+  ComplexDraft draft = draft_of(box_with_wall(0.5, 0.5, 0.25));
   ASSERT_TRUE(arrange(draft, 0).clean);
   const InsideReport report = keep_boundaries(draft, 0);
   double inside = 0;

@@ -68,9 +68,9 @@ void spoil(TetMesh& mesh, std::mt19937& random) {
       break;
     }
     case 2: {
-      const std::array<Index, 4> twin = mesh.tets[any()];
+      const std::array<Index, 4> duplicate = mesh.tets[any()];
       for (unsigned times = 0; times < 1 + random() % 3; ++times) {
-        mesh.tets.push_back(twin);
+        mesh.tets.push_back(duplicate);
         mesh.tet_region.push_back(1);
       }
       break;

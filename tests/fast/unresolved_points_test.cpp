@@ -60,16 +60,16 @@ TEST_F(UnresolvedPointsTest, OneIsDueWhenItsBallHasNotShrunk) {
   WorkQueue::Item item;
   ASSERT_TRUE(queue_.pop(item));
   EXPECT_EQ(item.priority, WorkQueue::unresolved_points);
-  EXPECT_TRUE(points_.due(point, item.entry.stamp));
+  EXPECT_TRUE(points_.is_due(point, item.entry.stamp));
   EXPECT_FALSE(queue_.pop(item));
   insert({0.5, 0.5, 0.8});
-  EXPECT_FALSE(points_.due(point, item.entry.stamp));  // other points come first now
+  EXPECT_FALSE(points_.is_due(point, item.entry.stamp));  // other points come first now
   ASSERT_TRUE(queue_.pop(item));
-  EXPECT_TRUE(points_.due(point, item.entry.stamp));
+  EXPECT_TRUE(points_.is_due(point, item.entry.stamp));
   points_.resolve(point, 9);
   EXPECT_TRUE(points_.resolved(point));
   EXPECT_EQ(points_.vertex_near(point), 9U);
-  EXPECT_FALSE(points_.due(point, item.entry.stamp));
+  EXPECT_FALSE(points_.is_due(point, item.entry.stamp));
 }
 
 TEST_F(UnresolvedPointsTest, ACandidateWarpsToTheLowestDimensionWithinTheta) {
@@ -107,7 +107,7 @@ TEST_F(UnresolvedPointsTest, OneThatIsWithdrawnIsFoundNoMore) {
   ASSERT_TRUE(queue_.pop(item));
   points_.withdraw(point);
   EXPECT_FALSE(points_.any_at(v));
-  EXPECT_FALSE(points_.due(point, item.entry.stamp));
+  EXPECT_FALSE(points_.is_due(point, item.entry.stamp));
   EXPECT_FALSE(points_.resolved(point));
   EXPECT_EQ(target({0.5, 0.5, 0.56}, 0.2), none);
 }

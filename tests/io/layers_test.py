@@ -16,7 +16,7 @@ import tempfile
 
 import numpy as np
 
-VOLUME = 3 + 49 / 30  # of LayerMesh
+VOLUME = 3 + 49 / 30  # volume of LayerMesh
 EDGES = {
     "tetra": ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)),
     "wedge": ((0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 3), (0, 3), (1, 4), (2, 5)),

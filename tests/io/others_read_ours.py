@@ -3,8 +3,8 @@
 
     others_read_ours.py WRITE_SAMPLE_MESH
 
-Writes the sample mesh as .vtu, .msh and .mesh and reads it with meshio, VTK and Gmsh. What is not
-installed is skipped and named. Exit code 0: all agree; 1: not; 77: nothing could be tested.
+Writes the sample mesh as .vtu, .msh and .mesh and reads it with meshio, VTK and Gmsh. A library
+that is not installed is skipped and named. Exit code 0: all agree; 1: not; 77: nothing could be tested.
 """
 import os
 import shutil

@@ -83,11 +83,11 @@ TEST(Coarsen, KeepsEveryGuaranteeOfThinShapes) {
   }
 }
 
-// One seed says little about a few hundred tets, and one contraction removes more than a hundredth of sixty.
+// One seed says little about a few hundred tets, and one collapse removes more than a hundredth of sixty.
 // (Over 48 seeds, the wedge of 1 degree loses 0.5% with balls placed up front, 0.8% with balls placed in the
 // pass, up to 6% for one seed.)
 TEST(Coarsen, RemovesHardlyAnythingAgain) {
-  constexpr std::size_t few = 1000, of_one_contraction = 6;
+  constexpr std::size_t few = 1000, of_one_collapse = 6;
   for (const Shape& shape : thin_shapes()) {
     SCOPED_TRACE(shape.name);
     unsigned seeds = 4;
@@ -104,7 +104,7 @@ TEST(Coarsen, RemovesHardlyAnythingAgain) {
           static_cast<std::ptrdiff_t>(again.tets_before) - static_cast<std::ptrdiff_t>(again.tets_after);
       EXPECT_EQ(faults({meshed.plc, {}, check(meshed.result.mesh, meshed.plc)}), "");
     }
-    EXPECT_LE(std::abs(removed), all / 100 + of_one_contraction);
+    EXPECT_LE(std::abs(removed), all / 100 + of_one_collapse);
   }
 }
 

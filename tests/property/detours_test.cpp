@@ -10,7 +10,7 @@
 #include "collarmesh/check.h"
 #include "collarmesh/coarsen.h"
 #include "collarmesh/improve.h"
-#include "improve/remedies.h"
+#include "improve/operation_chooser.h"
 #include "support/acute_shapes.h"
 #include "support/meshing.h"
 #include "support/shapes.h"
@@ -23,7 +23,7 @@ using remeshing::EditableMesh;
 using remeshing::Operations;
 using remeshing::SliverRule;
 using remeshing::improvement::Detours;
-using remeshing::improvement::Remedies;
+using remeshing::improvement::OperationChooser;
 using testing::Meshed;
 
 constexpr double reached_angle = 33, wanted_angle = 38, hopeless_angle = 65;
@@ -52,24 +52,24 @@ struct Bench {
       : edited(meshed.result.mesh, meshed.plc,
                SurfaceTolerance(default_distance(0, meshed.plc.bounds.diagonal()))),
         rule(options(wanted).bounds.radius_edge),
-        remedies(edited, rule, options(wanted)),
+        chooser(edited, rule, options(wanted)),
         operations(edited, rule) {
     edited.prepare();
   }
 
-  Detours detours(std::size_t most_trials) { return {edited, remedies, operations, most_trials}; }
+  Detours detours(std::size_t most_trials) { return {edited, chooser, operations, most_trials}; }
 
   std::vector<Index> poor() const {
     std::vector<Index> found;
     for (Index t = 0; t < edited.complex.size(); ++t)
-      if (remedies.poor_quality(t) < INFINITY) found.push_back(t);
+      if (chooser.poor_quality(t) < INFINITY) found.push_back(t);
     return found;
   }
 
   /// Returns the qualities of poor tets, sorted.
   std::vector<double> poor_qualities() const {
     std::vector<double> found;
-    for (const Index t : poor()) found.push_back(remedies.quality(t));
+    for (const Index t : poor()) found.push_back(chooser.quality(t));
     std::sort(found.begin(), found.end());
     return found;
   }
@@ -84,7 +84,7 @@ struct Bench {
 
   EditableMesh edited;
   SliverRule rule;
-  Remedies remedies;
+  OperationChooser chooser;
   Operations operations;
 };
 
@@ -123,7 +123,7 @@ TEST(Detours, MakeTheMeshBetter) {
     std::vector<Index> poor = bench.poor();
     poor.resize(std::min<std::size_t>(poor.size(), 15));
     for (const Index tet : poor)
-      if (bench.remedies.poor_quality(tet) < INFINITY) taken += take_and_compare(meshed, bench, tet) ? 1 : 0;
+      if (bench.chooser.poor_quality(tet) < INFINITY) taken += take_and_compare(meshed, bench, tet) ? 1 : 0;
     bench.edited.store();
     meshed.report = check(meshed.result.mesh, meshed.plc);
     EXPECT_EQ(testing::faults(meshed), "");
@@ -143,8 +143,7 @@ TEST(Detours, LeaveTheMeshAsItWas) {
     std::vector<Index> poor = bench.poor();
     poor.resize(std::min<std::size_t>(poor.size(), 15));
     for (const Index tet : poor)
-      if (bench.remedies.poor_quality(tet) < INFINITY)
-        refused += take_and_compare(meshed, bench, tet) ? 0 : 1;
+      if (bench.chooser.poor_quality(tet) < INFINITY) refused += take_and_compare(meshed, bench, tet) ? 0 : 1;
     bench.edited.store();
     meshed.report = check(meshed.result.mesh, meshed.plc);
     EXPECT_EQ(testing::faults(meshed), "");

@@ -103,11 +103,11 @@ std::vector<Operation> all_operations() {
            },
            Change::Kind::insertion,
            {2, 3}},
-          {"contraction",
+          {"collapse",
            [=](Workbench& on, Index tet, unsigned i, unsigned j, Change& change) {
-             on.operations.contract_edge(corner(on, tet, i), corner(on, tet, j), change);
+             on.operations.collapse_edge(corner(on, tet, i), corner(on, tet, j), change);
            },
-           Change::Kind::contraction,
+           Change::Kind::collapse,
            {1, 2, 3}},
           {"edge removal anyhow",
            [](Workbench& on, Index tet, unsigned i, unsigned j, Change& change) {
@@ -123,11 +123,11 @@ std::vector<Operation> all_operations() {
            Change::Kind::insertion,
            {2, 3},
            true},
-          {"contraction anyhow",
+          {"collapse anyhow",
            [=](Workbench& on, Index tet, unsigned i, unsigned j, Change& change) {
-             on.operations.contract_edge(corner(on, tet, i), corner(on, tet, j), change, least);
+             on.operations.collapse_edge(corner(on, tet, i), corner(on, tet, j), change, least);
            },
-           Change::Kind::contraction,
+           Change::Kind::collapse,
            {1, 2, 3},
            true}};
 }
@@ -135,7 +135,7 @@ std::vector<Operation> all_operations() {
 unsigned dimension_of(const Workbench& on, const Change& change) {
   switch (change.kind) {
     case Change::Kind::move:
-    case Change::Kind::contraction: return on.mesh.features[change.vertex].dimension;
+    case Change::Kind::collapse: return on.mesh.features[change.vertex].dimension;
     case Change::Kind::insertion: return change.feature.dimension;
     case Change::Kind::boundary_flip: return 2;
     default: return 3;
@@ -233,8 +233,8 @@ bool link_condition(const Cells& cells, Index a, Index b) {
   });
 }
 
-// Whatever the shapes, contractions must keep the link condition in the tets and in the mesh's faces.
-TEST_F(ImproveOperations, ContractionsOnFeaturesKeepTheLinkCondition) {
+// Whatever the shapes, collapses must keep the link condition in the tets and in the mesh's faces.
+TEST_F(ImproveOperations, CollapsesOnFeaturesKeepTheLinkCondition) {
   const AnyShape rule;
   std::size_t proposed = 0, forbidden = 0;
   for (const auto& [name, meshed] : meshes()) {
@@ -261,7 +261,7 @@ TEST_F(ImproveOperations, ContractionsOnFeaturesKeepTheLinkCondition) {
       const bool holds = link_condition(tets, vertex, onto) && link_condition(faces, vertex, onto);
       forbidden += holds ? 0 : 1;
       Change change;
-      operations.contract_edge(vertex, onto, change, 0);
+      operations.collapse_edge(vertex, onto, change, 0);
       if (change.kind == Change::Kind::none) continue;
       ++proposed;
       EXPECT_TRUE(holds) << vertex << " onto " << onto;
@@ -307,7 +307,7 @@ TetMesh body(const std::vector<std::array<Index, 4>>& tets, std::vector<Point> p
 
 // Bodies in which vertex 0 may be moved onto vertex 1, or in which only one part of the link condition
 // forbids the move.
-TEST(ContractionsOnFeatures, EachPartOfTheLinkConditionForbidsSome) {
+TEST(CollapsesOnFeatures, EachPartOfTheLinkConditionForbidsSome) {
   // Vertex 0 is far away, so that no edge becomes too long.
   const std::vector<Point> points{{9, 8, 7},       {1, 0, 0},      {0, 1, 0.1},    {0, 0.2, 1},
                                   {0.5, 0.5, 0.6}, {-1, 0.4, 0.2}, {-0.5, -1, 0.3}};
@@ -336,8 +336,8 @@ TEST(ContractionsOnFeatures, EachPartOfTheLinkConditionForbidsSome) {
     EditableMesh edited(mesh, plc, SurfaceTolerance(distance));
     Operations operations(edited, rule);
     Change change;
-    operations.contract_edge(0, 1, change, 0);
-    EXPECT_EQ(change.kind, allowed ? Change::Kind::contraction : Change::Kind::none);
+    operations.collapse_edge(0, 1, change, 0);
+    EXPECT_EQ(change.kind, allowed ? Change::Kind::collapse : Change::Kind::none);
   }
 }
 

@@ -177,7 +177,7 @@ TEST(ImprovePinched, EveryGuaranteeStaysWhereBodiesTouch) {
   }
 }
 
-// Contraction would destroy the tiny inclusion: neighbours of its triangles are joined, too.
+// A collapse would destroy the tiny inclusion: neighbours of its triangles are joined, too.
 TEST(ImproveInclusion, ATinyOneStays) {
   using namespace testing;
   for (const double bound : {35.0, 40.0})

@@ -21,7 +21,7 @@ struct PoissonErrors {
   double l2;                ///< error of the solution in L2
   double h1;                ///< error of its gradient in L2
   double element_size;      ///< cube root of the mean volume of a tet
-  double condition_number;  ///< of the stiffness matrix without boundary nodes; 0: not computed
+  double condition_number;  ///< condition of the stiffness matrix without boundary nodes; 0: not computed
   std::size_t unknowns;
 };
 

@@ -4,15 +4,15 @@
 
 #include <span>
 
-#include "facets/draft.h"
+#include "facets/complex_draft.h"
 #include "repair/arrangement.h"
 #include "support/repair_shapes.h"
 
 namespace collarmesh::testing::faulty {
 
 /// Makes a draft of surfaces as repair gets them; equal points are merged unless `torn`.
-inline facets::Draft draft_of(std::span<const PolygonSoup> soups, bool torn = false) {
-  facets::Draft draft;
+inline facets::ComplexDraft draft_of(std::span<const PolygonSoup> soups, bool torn = false) {
+  facets::ComplexDraft draft;
   for (Index s = 0; s < soups.size(); ++s) {
     const PolygonSoup soup = triangulated(soups[s]);
     const auto first = static_cast<Index>(draft.points.size());
@@ -31,10 +31,10 @@ inline facets::Draft draft_of(std::span<const PolygonSoup> soups, bool torn = fa
   if (!torn) repairing::unify_equal_points(draft);
   return draft;
 }
-inline facets::Draft draft_of(const PolygonSoup& soup) { return draft_of({&soup, 1}); }
+inline facets::ComplexDraft draft_of(const PolygonSoup& soup) { return draft_of({&soup, 1}); }
 
 /// Returns the draft with its corners at (0, 0, 0) and (6, 0, 0) moved a little.
-inline facets::Draft with_moved_corners(facets::Draft draft) {
+inline facets::ComplexDraft with_moved_corners(facets::ComplexDraft draft) {
   for (const double x : {0.0, 6.0}) {
     const auto moved = static_cast<Index>(draft.points.size());
     draft.points.push_back({x, 0.1, 0.2});

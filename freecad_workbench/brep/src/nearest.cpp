@@ -186,7 +186,7 @@ class EdgeCurve {
   static constexpr double chords_apart = 3;
 
   BRepAdaptor_Curve curve_;
-  std::vector<Point> points_;  // of chords; none for elementary curves
+  std::vector<Point> points_;  // ends of chords; none for elementary curves
   std::vector<double> parameters_;
   double reach_ = 0;
 };

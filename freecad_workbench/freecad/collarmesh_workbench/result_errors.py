@@ -106,7 +106,7 @@ def energies(solution, strain, size):
     lame = modulus * ratio / ((1 + ratio) * (1 - 2 * ratio))
     traces = numpy.trace(strain, axis1=2, axis2=3)
 
-    def integral(values):  # of the square of a linear function
+    def integral(values):  # integrates the square of a linear function
         flat = values.reshape(len(values), 4, -1)
         return size / 20 * ((flat**2).sum(axis=(1, 2)) + (flat.sum(axis=1) ** 2).sum(axis=1))
 

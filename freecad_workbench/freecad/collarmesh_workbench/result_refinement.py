@@ -41,7 +41,7 @@ def is_possible(obj):
 class Plan:
     """The next mesh, as a result suggests it."""
 
-    label: str  # of the result
+    label: str  # label of the result
     solution: result_errors.Solution
     errors: result_errors.Errors
     sizes: result_errors.Sizes

@@ -1,4 +1,4 @@
-"""Handles of a sphere, box or cylinder in the 3D view. Those at its middle move it; the others change its
+"""Handles of a sphere, box or cylinder in the 3D view. Handles at its middle move it; the others change its
 lengths."""
 
 import FreeCAD

@@ -12,8 +12,8 @@
 
 #include "calls.h"
 #include "check/feature_sizes.h"
+#include "check/mesh_to_check.h"
 #include "check/predicates.h"
-#include "check/subject.h"
 #include "collarmesh/distributed.h"
 #include "common/sorted.h"
 #include "common/split_mix.h"
@@ -51,25 +51,27 @@ class Fingerprint {
   std::array<std::uint64_t, 2> sums_{};
 };
 
-/// Returns the subject of the checks without a mesh: the complex, and the allowed distances of a mesh from
+/// Returns the input of the checks without a mesh: the complex, and the allowed distances of a mesh from
 /// it.
-checks::Subject subject_of(const Shape& shape, const TetMesh& nothing) {
+checks::MeshToCheck mesh_to_check_of(const Shape& shape, const TetMesh& nothing) {
   CheckOptions options;
   options.bounds.tolerance = SurfaceTolerance(shape.distance);
-  return checks::make_subject(nothing, shape.plc, options);
+  return checks::make_mesh_to_check(nothing, shape.plc, options);
 }
 
 /// The expected measures of the complex's features, and the allowed differences.
 struct Expected {
-  explicit Expected(const Shape& shape) : subject(subject_of(shape, nothing)), sizes(measures_of(shape.plc)) {
+  explicit Expected(const Shape& shape)
+      : to_check(mesh_to_check_of(shape, nothing)), sizes(measures_of(shape.plc)) {
     const Plc& plc = shape.plc;
     for (Index c = 0; c < plc.curves.size(); ++c) measure_turn(plc, c);
     for (Index p = 0; p < plc.patches.size(); ++p) {
-      const auto [area, room] = plc.patches[p].planar ? checks::planar_area(subject, p) : smooth_area(plc, p);
+      const auto [area, room] =
+          plc.patches[p].planar ? checks::planar_area(to_check, p) : smooth_area(plc, p);
       sizes.areas[p] = area;
       area_room.push_back(room);
     }
-    const checks::RegionVolumes of_regions = checks::expected_volumes(subject);
+    const checks::RegionVolumes of_regions = checks::expected_volumes(to_check);
     for (Index r = 1; r < plc.regions.size(); ++r) {
       volumes[plc.regions[r].tag] += of_regions.enclosed[r];
       volume_room[plc.regions[r].tag] += of_regions.allowed[r];
@@ -80,7 +82,7 @@ struct Expected {
   Expected& operator=(const Expected&) = delete;
 
   TetMesh nothing;
-  checks::Subject subject;
+  checks::MeshToCheck to_check;
   ShapeMeasures sizes;
   std::vector<double> length_room, area_room;  ///< allowed differences, by curve and by patch
   std::map<Tag, double> volumes, volume_room;
@@ -100,7 +102,7 @@ struct Expected {
     for (std::size_t i = 0; i < segments; ++i)
       if (i + 1 < segments || curve.closed) turn += angle(segment(i), segment((i + 1) % segments));
     length_room.push_back(1e-9 * sizes.lengths[c] +
-                          subject.curve_allowance[c] * ((curve.straight ? 0 : 2 * turn) + 2));
+                          to_check.curve_allowance[c] * ((curve.straight ? 0 : 2 * turn) + 2));
   }
 
   checks::AllowedArea smooth_area(const Plc& plc, Index p) const {
@@ -118,8 +120,8 @@ struct Expected {
         if (!is_new) turn += side->second.first * angle(side->second.second, normal);
       }
     }
-    double room = 1e-9 * sizes.areas[p] + 2 * subject.patch_allowance[p] * turn;
-    for (const Index c : patch.curves) room += subject.curve_allowance[c] * sizes.lengths[c];
+    double room = 1e-9 * sizes.areas[p] + 2 * to_check.patch_allowance[p] * turn;
+    for (const Index c : patch.curves) room += to_check.curve_allowance[c] * sizes.lengths[c];
     return {sizes.areas[p], room};
   }
 
@@ -330,7 +332,7 @@ class Certification {
 
   void check_distance(std::string_view what, const Point& p, const TetMesh::VertexFeature& feature,
                       FeatureShapes& nearest) {
-    const checks::Subject& subject = expected_->subject;
+    const checks::MeshToCheck& to_check = expected_->to_check;
     const Index i = feature.feature;
     const bool on_curve = feature.dimension == 1;
     const bool flat = on_curve ? plc_.curves[i].straight : plc_.patches[i].planar;
@@ -338,10 +340,10 @@ class Certification {
                                          : distance(nearest.nearest(feature, p), p);
     if (!flat) certificate_.largest_distance = std::max(certificate_.largest_distance, off);
     if (on_curve)
-      checks::check_off_feature(guarantee::curve_distance, {what}, p, off, subject.curve_allowance[i],
+      checks::check_off_feature(guarantee::curve_distance, {what}, p, off, to_check.curve_allowance[i],
                                 {"curve", i, plc_.curves[i].tag}, findings_);
     else
-      checks::check_off_feature(guarantee::patch_distance, {what}, p, off, subject.patch_allowance[i],
+      checks::check_off_feature(guarantee::patch_distance, {what}, p, off, to_check.patch_allowance[i],
                                 {"patch", i, plc_.patches[i].tag}, findings_);
   }
 
@@ -396,9 +398,9 @@ class Certification {
     TetMesh found;
     found.points = gathered(communicator_, corners_);
     if (Ranks(communicator_).rank != 0) return;
-    checks::Subject& subject = expected_->subject;
-    subject.match.vertex_point = checks::match_vertices(found, plc_, subject.rounding);
-    checks::check_vertices_present(subject, findings_);
+    checks::MeshToCheck& to_check = expected_->to_check;
+    to_check.match.vertex_point = checks::match_vertices(found, plc_, to_check.rounding);
+    checks::check_vertices_present(to_check, findings_);
     const auto compare = [&](std::string_view guarantee, std::string_view what, Tag tag, double measured,
                              double wanted, double room) {
       if (!(std::fabs(measured - wanted) <= room))
@@ -411,11 +413,11 @@ class Certification {
       compare(guarantee::region_volume, "region", tag, certificate_.region_volumes[tag], wanted,
               expected_->volume_room[tag]);
     for (Index p = 0; p < areas_.size(); ++p)
-      if (!checks::patch_is_outside(subject, p))
+      if (!checks::patch_is_outside(to_check, p))
         compare(guarantee::patch_area, "patch", plc_.patches[p].tag, areas_[p], expected_->sizes.areas[p],
                 expected_->area_room[p]);
     for (Index k = 0; k < lengths_.size(); ++k)
-      if (!checks::curve_is_outside(subject, k))
+      if (!checks::curve_is_outside(to_check, k))
         compare("curve_length", "curve", plc_.curves[k].tag, lengths_[k], expected_->sizes.lengths[k],
                 expected_->length_room[k]);
   }

@@ -32,7 +32,7 @@ constexpr double least_score = 0.2;
 // The score of a flat tet; inverted tets have lower scores.
 constexpr double flat_score = -100;
 // The unit to which squared penalties are rounded. Doubles add its multiples without rounding.
-constexpr double unit_of_lack = 0x1p-16;
+constexpr double unit_of_penalty = 0x1p-16;
 // The maximum number of sweeps that make room, and the steps that a vertex tries, relative to its shortest
 // edge.
 constexpr unsigned most_sweeps = 60;
@@ -201,9 +201,9 @@ class Placement {
     return 1 + std::min({0.0, angles.least - least(tet), most(tet) - angles.most}) / tolerated;
   }
   /// Returns the squared penalty of a tet, relative to a score of 1, as a whole number.
-  double lack(Index tet, const Corners& p) const {
+  double penalty(Index tet, const Corners& p) const {
     const double missing = 1 - score(tet, p);
-    return std::nearbyint(missing * missing * missing * missing / unit_of_lack);
+    return std::nearbyint(missing * missing * missing * missing / unit_of_penalty);
   }
 
   bool acceptable(Index tet) const {
@@ -300,13 +300,13 @@ class Placement {
 
   /// Returns the sum of the penalties of the tets around a vertex; if the sum is at least `enough`, may
   /// return only a part of it that is at least `enough`, too.
-  double lack_around(Index vertex, const Point& place, double enough) const {
+  double penalty_around(Index vertex, const Point& place, double enough) const {
     double sum = 0;
     for (const Index t : tets_at_[vertex]) {
       Corners p = mesh_->corners(t);
       for (unsigned i = 0; i < 4; ++i)
         if (mesh_->tets[t][i] == vertex) p[i] = place;
-      sum += lack(t, p);
+      sum += penalty(t, p);
       if (sum >= enough) break;
     }
     return sum;
@@ -320,7 +320,7 @@ class Placement {
     for (std::size_t i = 0; i < movers.size(); ++i) {
       PetscReal* own = &known[facts * i];
       const Index v = movers[i];
-      before.push_back(lack_around(v, mesh_->points[v], INFINITY));
+      before.push_back(penalty_around(v, mesh_->points[v], INFINITY));
       for (const Index t : tets_at_[v])
         for (const Index w : mesh_->tets[t]) {
           if (w == v) continue;
@@ -351,7 +351,7 @@ class Placement {
     };
     for (std::size_t i = 0; i < movers.size(); ++i)
       for (std::size_t k = 0; k < places; ++k)
-        after[places * i + k] = lack_around(movers[i], place(i, k), before[i]);
+        after[places * i + k] = penalty_around(movers[i], place(i, k), before[i]);
     combine(movers, after, MPI_SUM, places);
     std::vector<Index> moved;
     for (std::size_t i = 0; i < movers.size(); ++i) {

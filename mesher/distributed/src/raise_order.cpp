@@ -20,9 +20,11 @@ namespace {
 constexpr double farthest = 0.5;
 // The default of SecondOrderOptions::least_jacobian.
 constexpr double least_jacobian = 0.1;
-class Curving {
+
+/// The placement of mid-edge nodes of a mesh on many ranks on smooth features, such that no tet is inverted.
+class DistributedCurving {
  public:
-  Curving(DM dm, const Shape& shape)
+  DistributedCurving(DM dm, const Shape& shape)
       : communicator_(PetscObjectComm(reinterpret_cast<PetscObject>(dm))),
         shape_(shape),
         mesh_(dm, 2),
@@ -132,7 +134,7 @@ OrderReport ParallelMesh::raise_order(const Shape& shape) {
   agree(communicator_, [&] {
     if (order_ != 1) throw OptionError("the mesh is of second order already");
   });
-  Curving curving(dm_, shape);
+  DistributedCurving curving(dm_, shape);
   const std::vector<Point>& points = curving.run();
   call(DMPlexCreateCoordinateSpace(dm_, 2, nullptr));
   agree(communicator_, [&] { set_points(dm_, points); });

@@ -126,7 +126,7 @@ function faceColour(number) {
 }
 
 const layerColours = [[0, '#b2182b'], [0.1, '#ef8a62'], [0.3, '#fddbc7'], [0.6, '#d1e5f0'], [0.9, '#4393c3']];
-const cellColours = { odd: '#e3a72f', even: '#f1d38c' };  // of layers, in cuts
+const cellColours = { odd: '#e3a72f', even: '#f1d38c' };  // cells of layers, in cuts
 
 // Colours faces by the share of the thickness that their layers reach in the mean, and cells inside by their layers.
 function layerColour(mesh, face) {

@@ -44,7 +44,7 @@ class Bringing {
   }
 
   bool run() {
-    relax([](Relaxation& relaxation) { relaxation.contract(); });
+    relax([](Relaxation& relaxation) { relaxation.collapse(); });
     if (is_thin()) divide_thin();
     for (unsigned round = 0; round < rounds && may_go_on(); ++round) {
       std::size_t changes = 0;
@@ -132,7 +132,7 @@ class Bringing {
         return division.divide_all(longest, options_.max_vertices, execution_);
       });
       if (divided == 0) break;
-      relax([](Relaxation& relaxation) { relaxation.contract_short(around); });
+      relax([](Relaxation& relaxation) { relaxation.collapse_short(around); });
     }
   }
 

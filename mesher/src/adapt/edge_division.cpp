@@ -266,7 +266,7 @@ void EdgeDivision::improve_changed(Trial& trial) {
     if (poor == none) break;
     Change change = improvement_of(poor);
     if (change.is_none() || !edited_.stays_oriented(change) ||
-        (change.kind == Change::Kind::contraction && !edited_.curve_can_spare(change))) {
+        (change.kind == Change::Kind::collapse && !edited_.curve_can_spare(change))) {
       given_up.push_back(poor);
       continue;
     }
@@ -286,7 +286,7 @@ Change EdgeDivision::improvement_of(Index tet) {
     if (!found()) operations_.move_vertex(v, change);
   for (const Index v : corners)
     for (const Index w : corners)
-      if (v != w && !found()) operations_.contract_edge(v, w, change);
+      if (v != w && !found()) operations_.collapse_edge(v, w, change);
   return change;
 }
 

@@ -40,29 +40,29 @@ Relaxation::Relaxation(EditableMesh& edited, const MeshOptions& options, std::ve
   edited_.prepare();
 }
 
-void Relaxation::contract() {
+void Relaxation::collapse() {
   for (const double length : lengths) {
-    contract_short(length);
+    collapse_short(length);
     improve_tets(good, Means::vertices);
-    contract_again(length);
+    collapse_again(length);
   }
 }
 
-void Relaxation::contract_short(double below) {
+void Relaxation::collapse_short(double below) {
   kept_.assign(mesh().points.size(), 0);
-  contract_again(below);
+  collapse_again(below);
 }
 
 void Relaxation::improve() {
   improve_tets(better, Means::moves);
-  contract_again(lengths.back());
+  collapse_again(lengths.back());
   improve_tets(better, Means::vertices);
 }
 
 /// Repeats collapses as long as that is worthwhile.
-void Relaxation::contract_again(double below) {
+void Relaxation::collapse_again(double below) {
   for (unsigned pass = 0; pass < most_relaxations; ++pass)
-    if (!contract_shorter_than(below)) break;
+    if (!collapse_shorter_than(below)) break;
 }
 
 /// Improves tets as long as that is worthwhile, at first by removing edges alone.
@@ -71,7 +71,7 @@ void Relaxation::improve_tets(double enough, Means later) {
     if (!improve_below(enough, pass == 0 ? Means::edges : later)) break;
 }
 
-bool Relaxation::contract_shorter_than(double below) {
+bool Relaxation::collapse_shorter_than(double below) {
   std::vector<double> shortest(mesh().points.size(), INFINITY);
   for (Index t = 0; t < complex().size(); ++t) {
     if (!complex()[t].alive) continue;
@@ -85,19 +85,19 @@ bool Relaxation::contract_shorter_than(double below) {
   for (Index v = 0; v < shortest.size(); ++v)
     if (shortest[v] < below && mesh().features[v].dimension > 0) candidates.push_back({shortest[v], v});
   std::ranges::stable_sort(candidates, {}, &Near::length);
-  const std::size_t before = contractions_;
+  const std::size_t before = collapses_;
   const bool ended = change_each(
       candidates,
       [&](Operations& operations, const Near& candidate, Proposal& found) {
-        propose_contraction(operations, candidate.vertex, below, found);
+        propose_collapse(operations, candidate.vertex, below, found);
       },
       [&](const Near& candidate, Proposal& found) {
         if (apply(found))
-          ++contractions_;
+          ++collapses_;
         else
           kept_[candidate.vertex] = renewals_.advance();
       });
-  return ended && static_cast<double>(contractions_ - before) >
+  return ended && static_cast<double>(collapses_ - before) >
                       least_share_changed * static_cast<double>(shortest.size());
 }
 
@@ -117,14 +117,13 @@ bool Relaxation::change_each(const std::vector<Item>& items, const Propose& prop
       });
 }
 
-void Relaxation::propose_contraction(Operations& operations, Index vertex, double below,
-                                     Proposal& found) const {
+void Relaxation::propose_collapse(Operations& operations, Index vertex, double below, Proposal& found) const {
   found.change = {};
   found.read = {vertex};
   if (!complex().in_use(vertex) || kept_[vertex] > renewals_.at(vertex)) return;
   std::vector<Index> star;
   complex().star(vertex, star);
-  if (star.size() > most_tets || !operations.begin_contractions(vertex, star)) return;
+  if (star.size() > most_tets || !operations.begin_collapses(vertex, star)) return;
   const Neighbours neighbours = neighbours_of(vertex, star, below);
   const double least_quality = std::max(least, std::min(share_left * operations.worst_at_vertex(), good));
   const double longest = std::max(neighbours.longest, coarsening::CoarseningRule::longest_new);
@@ -133,7 +132,7 @@ void Relaxation::propose_contraction(Operations& operations, Index vertex, doubl
     const bool fits = std::ranges::all_of(
         neighbours.all, [&](Index v) { return v == onto.vertex || length(onto.vertex, v) <= longest; });
     if (!fits) continue;
-    operations.contract_onto(onto.vertex, least_quality, 0, found.change);
+    operations.collapse_onto(onto.vertex, least_quality, 0, found.change);
     if (!found.change.is_none() && edited_.stays_oriented(found.change)) return;
     found.change = {};
   }
@@ -208,7 +207,7 @@ void Relaxation::propose_improvement(Operations& operations, Index tet, double e
     found.read.insert(found.read.end(), complex()[t].corners.begin(), complex()[t].corners.end());
   for (const Index v : corners)
     for (const Index w : corners)
-      if (means == Means::vertices && v != w && change.is_none()) operations.contract_edge(v, w, change);
+      if (means == Means::vertices && v != w && change.is_none()) operations.collapse_edge(v, w, change);
   if (!change.is_none() && !edited_.stays_oriented(change)) change = {};
 }
 

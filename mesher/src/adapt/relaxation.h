@@ -28,14 +28,14 @@ class Relaxation {
              const Execution& execution);
 
   /// Collapses short edges and improves tets, for lengths that grow up to the target.
-  void contract();
+  void collapse();
   /// Collapses edges shorter than this share of the target, without any improvement.
-  void contract_short(double below);
+  void collapse_short(double below);
   /// Improves tets and collapses edges where that has become possible.
   void improve();
 
   /// Returns the number of changes.
-  std::size_t changes() const { return contractions_ + others_; }
+  std::size_t changes() const { return collapses_ + others_; }
 
  private:
   struct Near {
@@ -53,7 +53,7 @@ class Relaxation {
   };
   struct Neighbours {
     std::vector<Index> all;
-    std::vector<Near> near;  ///< those onto which the vertex may be collapsed, by length
+    std::vector<Near> near;  ///< neighbours onto which the vertex may be collapsed, by length
     double longest = 0;      ///< length of the longest edge
   };
 
@@ -61,11 +61,11 @@ class Relaxation {
   const TetMesh& mesh() const { return edited_.complex.mesh(); }
   double quality(Index tet) const { return rule_.quality(complex().corners(tet), complex()[tet].corners); }
   double length(Index a, Index b) const { return metric_.length(a, b, complex().edge(a, b)); }
-  void contract_again(double below);
-  bool contract_shorter_than(double below);
+  void collapse_again(double below);
+  bool collapse_shorter_than(double below);
   template <class Item, class Propose, class Use>
   bool change_each(const std::vector<Item>& items, const Propose& propose, const Use& use);
-  void propose_contraction(Operations& operations, Index vertex, double below, Proposal& found) const;
+  void propose_collapse(Operations& operations, Index vertex, double below, Proposal& found) const;
   Neighbours neighbours_of(Index vertex, const std::vector<Index>& star, double below) const;
   void improve_tets(double enough, Means later);
   bool improve_below(double enough, Means means);
@@ -80,7 +80,7 @@ class Relaxation {
   TetBounds bounds_;
   coarsening::CoarseningRule rule_;
   const Execution& execution_;
-  std::size_t contractions_ = 0, others_ = 0, steps_ = 0;
+  std::size_t collapses_ = 0, others_ = 0, steps_ = 0;
   ChangeTimes changes_{mesh().points.size()};   // when tets at a vertex were removed, made or moved
   ChangeTimes renewals_{mesh().points.size()};  // when tets at a vertex were made or moved
   OrderedSpeculation<Operations> speculation_{[this] { return Operations(edited_, rule_); }};

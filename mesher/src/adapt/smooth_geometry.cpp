@@ -174,7 +174,7 @@ class SmoothPatch {
   // By triangle.
   std::vector<Corners> triangles_;
   std::vector<Corners> neighbours_;             // across the side opposite each corner; none at the border
-  std::vector<std::array<double, 6>> heights_;  // those of the cubic along 01, 10, 12, 21, 20, 02, see `at`
+  std::vector<std::array<double, 6>> heights_;  // heights of the cubic along 01, 10, 12, 21, 20, 02, see `at`
   std::optional<TriangleHierarchy> hierarchy_;
 };
 

@@ -1,21 +1,21 @@
 #include <algorithm>
 #include <cmath>
 
+#include "check/mesh_to_check.h"
 #include "check/polyline.h"
-#include "check/subject.h"
 
 namespace collarmesh::checks {
 
 namespace {
 
-double flat_allowance(double deviation, const Subject& subject) {
-  return std::min(4 * deviation, subject.plc.planar_tolerance) + subject.rounding;
+double flat_allowance(double deviation, const MeshToCheck& to_check) {
+  return std::min(4 * deviation, to_check.plc.planar_tolerance) + to_check.rounding;
 }
 
 }  // namespace
 
-std::vector<double> curve_allowances(const Subject& subject) {
-  const Plc& plc = subject.plc;
+std::vector<double> curve_allowances(const MeshToCheck& to_check) {
+  const Plc& plc = to_check.plc;
   std::vector<double> allowances;
   for (const Plc::Curve& curve : plc.curves) {
     double deviation = 0;
@@ -24,14 +24,14 @@ std::vector<double> curve_allowances(const Subject& subject) {
         deviation = std::max(deviation, nearest_on_segment(plc.points[i], plc.points[curve.points.front()],
                                                            plc.points[curve.points.back()])
                                             .distance);
-    allowances.push_back(curve.straight ? flat_allowance(deviation, subject)
-                                        : subject.tolerance.largest_on_curve(curve) + subject.rounding);
+    allowances.push_back(curve.straight ? flat_allowance(deviation, to_check)
+                                        : to_check.tolerance.largest_on_curve(curve) + to_check.rounding);
   }
   return allowances;
 }
 
-std::vector<double> patch_allowances(const Subject& subject) {
-  const Plc& plc = subject.plc;
+std::vector<double> patch_allowances(const MeshToCheck& to_check) {
+  const Plc& plc = to_check.plc;
   std::vector<double> deviations(plc.patches.size(), 0), allowances;
   for (const Plc::Triangle& t : plc.triangles) {
     const Plc::Patch& patch = plc.patches[t.patch];
@@ -40,8 +40,8 @@ std::vector<double> patch_allowances(const Subject& subject) {
           std::max(deviations[t.patch], std::fabs(dot(plc.points[i] - patch.origin, patch.normal)));
   }
   for (Index p = 0; p < plc.patches.size(); ++p)
-    allowances.push_back(plc.patches[p].planar ? flat_allowance(deviations[p], subject)
-                                               : subject.tolerance.largest_on_patch(p) + subject.rounding);
+    allowances.push_back(plc.patches[p].planar ? flat_allowance(deviations[p], to_check)
+                                               : to_check.tolerance.largest_on_patch(p) + to_check.rounding);
   return allowances;
 }
 

@@ -9,7 +9,7 @@
 #include <span>
 #include <tuple>
 
-#include "check/subject.h"
+#include "check/mesh_to_check.h"
 #include "common/flat_table.h"
 #include "common/found_in_ranges.h"
 #include "common/groups.h"
@@ -206,8 +206,8 @@ bool check_labels(const TetMesh& mesh, const Plc& plc, Findings& findings) {
   return findings.total() == before;
 }
 
-bool check_points(const Subject& subject, Findings& findings) {
-  const TetMesh& mesh = subject.mesh;
+bool check_points(const MeshToCheck& to_check, Findings& findings) {
+  const TetMesh& mesh = to_check.mesh;
   bool finite = true;
   for (Index i = 0; i < mesh.points.size(); ++i) {
     const Point& p = mesh.points[i];

@@ -66,10 +66,10 @@ std::map<std::vector<Tag>, CurvesOfTags> curves_by_tags(const Plc& plc) {
 
 }  // namespace
 
-std::vector<std::vector<std::array<Index, 2>>> border_edges(const Subject& subject) {
-  std::vector<std::vector<std::array<Index, 2>>> edges(subject.plc.curves.size());
-  auto curves = curves_by_tags(subject.plc);
-  const std::vector<Side> sides = sides_of(subject.mesh);
+std::vector<std::vector<std::array<Index, 2>>> border_edges(const MeshToCheck& to_check) {
+  std::vector<std::vector<std::array<Index, 2>>> edges(to_check.plc.curves.size());
+  auto curves = curves_by_tags(to_check.plc);
+  const std::vector<Side> sides = sides_of(to_check.mesh);
   for (std::size_t i = 0, j = 0; i < sides.size(); i = j) {
     std::vector<Tag> tags;
     for (j = i; j < sides.size() && sides[j].ends == sides[i].ends; ++j)
@@ -77,7 +77,7 @@ std::vector<std::vector<std::array<Index, 2>>> border_edges(const Subject& subje
     if (tags.size() == 1 && j - i == 2) continue;
     const auto found = curves.find(tags);
     if (found != curves.end())
-      edges[found->second.nearest(subject.midpoint(sides[i].ends))].push_back(sides[i].ends);
+      edges[found->second.nearest(to_check.midpoint(sides[i].ends))].push_back(sides[i].ends);
   }
   return edges;
 }

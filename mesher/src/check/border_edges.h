@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "check/subject.h"
+#include "check/mesh_to_check.h"
 
 namespace collarmesh::checks {
 
@@ -11,6 +11,6 @@ namespace collarmesh::checks {
 /// patches, except edges on other curves. Finds none along a curve inside one face, such as a seam. Positions
 /// alone do not suffice, because other programs place nodes on the exact curve, off the complex's polyline.
 /// Cost: O(n log n).
-std::vector<std::vector<std::array<Index, 2>>> border_edges(const Subject& subject);
+std::vector<std::vector<std::array<Index, 2>>> border_edges(const MeshToCheck& to_check);
 
 }  // namespace collarmesh::checks

@@ -11,7 +11,7 @@
 
 #include "check/labelled.h"
 #include "check/layer_cells.h"
-#include "check/subject.h"
+#include "check/mesh_to_check.h"
 #include "collarmesh/error.h"
 #include "collarmesh/mesher.h"
 #include "common/layer_tets.h"
@@ -40,24 +40,24 @@ double largest_coordinate(const Box& box) {
 
 }  // namespace
 
-Subject checks::make_subject(const TetMesh& mesh, const Plc& plc, const CheckOptions& options) {
+MeshToCheck checks::make_mesh_to_check(const TetMesh& mesh, const Plc& plc, const CheckOptions& options) {
   constexpr double epsilon = 0x1p-52;
   const Box box = bounds_of(plc);
-  Subject subject{mesh,
-                  plc,
-                  options,
-                  tolerance_of_any_size(plc, options.bounds),
-                  1e-12 * box.diagonal() + 8 * epsilon * largest_coordinate(box),
-                  {},
-                  {},
-                  std::make_shared<RegionLocator>(plc),
-                  {},
-                  {},
-                  false,
-                  none};
-  subject.curve_allowance = curve_allowances(subject);
-  subject.patch_allowance = patch_allowances(subject);
-  return subject;
+  MeshToCheck to_check{mesh,
+                       plc,
+                       options,
+                       tolerance_of_any_size(plc, options.bounds),
+                       1e-12 * box.diagonal() + 8 * epsilon * largest_coordinate(box),
+                       {},
+                       {},
+                       std::make_shared<RegionLocator>(plc),
+                       {},
+                       {},
+                       false,
+                       none};
+  to_check.curve_allowance = curve_allowances(to_check);
+  to_check.patch_allowance = patch_allowances(to_check);
+  return to_check;
 }
 
 namespace {
@@ -85,35 +85,36 @@ void take_measures(CheckReport& report, CheckReport&& part) {
 }
 
 // Checks independent groups of guarantees in parallel, each with its own report.
-void judge(Subject& subject, CheckReport& report, Findings& findings, const Execution& execution) {
-  report.faces = subject.mesh.faces.size();
-  report.edges = subject.mesh.edges.size();
-  subject.match = match_features(subject.mesh, subject.plc, subject.rounding);
-  find_collar_cells(subject, findings);
-  using Group = void (*)(const Subject&, CheckReport&, Findings&);
-  const std::array<Group, 8> groups{[](const Subject& s, CheckReport& r, Findings& f) {
-                                      check_tets(s, r, f);
-                                      check_interior_nodes(s, r, f);
-                                      check_region_volumes(s, r, f);
-                                      check_shape_kept(s, r, f);
-                                    },
-                                    check_conformity,
-                                    [](const Subject& s, CheckReport& r, Findings& f) {
-                                      warn_of_features_outside(s, r);
-                                      check_watertight(s, f);
-                                      check_vertices(s, f);
-                                      check_listed_edges(s, f);
-                                    },
-                                    check_curves,
-                                    check_thickness_kept,
-                                    check_patches,
-                                    [](const Subject& s, CheckReport&, Findings& f) { check_collars(s, f); },
-                                    check_second_order};
+void judge(MeshToCheck& to_check, CheckReport& report, Findings& findings, const Execution& execution) {
+  report.faces = to_check.mesh.faces.size();
+  report.edges = to_check.mesh.edges.size();
+  to_check.match = match_features(to_check.mesh, to_check.plc, to_check.rounding);
+  find_collar_cells(to_check, findings);
+  using Group = void (*)(const MeshToCheck&, CheckReport&, Findings&);
+  const std::array<Group, 8> groups{
+      [](const MeshToCheck& s, CheckReport& r, Findings& f) {
+        check_tets(s, r, f);
+        check_interior_nodes(s, r, f);
+        check_region_volumes(s, r, f);
+        check_shape_kept(s, r, f);
+      },
+      check_conformity,
+      [](const MeshToCheck& s, CheckReport& r, Findings& f) {
+        warn_of_features_outside(s, r);
+        check_watertight(s, f);
+        check_vertices(s, f);
+        check_listed_edges(s, f);
+      },
+      check_curves,
+      check_thickness_kept,
+      check_patches,
+      [](const MeshToCheck& s, CheckReport&, Findings& f) { check_collars(s, f); },
+      check_second_order};
   std::array<CheckReport, groups.size()> parts;
   parallel_for(groups.size(), [&](std::size_t i) {
     if (execution.cancelled()) return;
-    Findings own(parts[i], subject.options.findings_per_guarantee);
-    groups[i](subject, parts[i], own);
+    Findings own(parts[i], to_check.options.findings_per_guarantee);
+    groups[i](to_check, parts[i], own);
   });
   for (CheckReport& part : parts) {
     findings.take(part);
@@ -139,17 +140,17 @@ void note_layers(const TetMesh& mesh, CheckReport& report) {
                   layers.prisms.size(), layers.pyramids.size(), layers.quads.size()));
 }
 
-/// Judges the angles of the tets beside layers. `subject`: the mesh with its layers cut into tets.
-void check_core(const TetMesh& mesh, const Subject& subject, CheckReport& report) {
+/// Judges the angles of the tets beside layers. `to_check`: the mesh with its layers cut into tets.
+void check_core(const TetMesh& mesh, const MeshToCheck& to_check, CheckReport& report) {
   TetMesh labelled = mesh;
-  labelled.features = features_of(subject);
+  labelled.features = features_of(to_check);
   labelled.features.resize(mesh.points.size());
   labelled.face_patch.assign(
-      subject.match.face_patch.begin(),
-      subject.match.face_patch.begin() + static_cast<std::ptrdiff_t>(mesh.faces.size()));
-  Bounds bounds = subject.options.bounds;
+      to_check.match.face_patch.begin(),
+      to_check.match.face_patch.begin() + static_cast<std::ptrdiff_t>(mesh.faces.size()));
+  Bounds bounds = to_check.options.bounds;
   if (bounds.thin_angle == 0) bounds.thin_angle = least_core_angle;
-  check_core_angles(labelled, walls_below(mesh), subject.plc, bounds, report);
+  check_core_angles(labelled, walls_below(mesh), to_check.plc, bounds, report);
 }
 
 /// Judges a mesh of tets. `with_layers`: null, or the mesh with layers that were cut into tets to make this
@@ -157,15 +158,15 @@ void check_core(const TetMesh& mesh, const Subject& subject, CheckReport& report
 void check_tet_mesh(const TetMesh& mesh, const TetMesh* with_layers, const Plc& plc,
                     const CheckOptions& options, const Execution& execution, CheckReport& report,
                     Findings& findings) {
-  Subject given = make_subject(mesh, plc, options);
+  MeshToCheck given = make_mesh_to_check(mesh, plc, options);
   if (!check_points(given, findings)) return;
   const std::size_t before = findings.total();
   const std::optional<TetMesh> placed = place_by_position(given, report, findings);
   if (findings.total() > before || !check_labels(placed ? *placed : mesh, plc, findings)) return;
-  Subject subject = placed ? make_subject(*placed, plc, options) : std::move(given);
-  if (with_layers != nullptr) subject.first_part = static_cast<Index>(with_layers->tets.size());
-  judge(subject, report, findings, execution);
-  if (with_layers != nullptr && !report.cancelled) check_core(*with_layers, subject, report);
+  MeshToCheck to_check = placed ? make_mesh_to_check(*placed, plc, options) : std::move(given);
+  if (with_layers != nullptr) to_check.first_part = static_cast<Index>(with_layers->tets.size());
+  judge(to_check, report, findings, execution);
+  if (with_layers != nullptr && !report.cancelled) check_core(*with_layers, to_check, report);
 }
 
 [[noreturn]] void refuse_mesh(const Finding& finding) {
@@ -209,18 +210,18 @@ TetMesh labelled(const TetMesh& mesh, const Plc& plc, const CheckOptions& option
         refuse_mesh(finding);
   };
   if (!check_arrays(mesh, findings)) refuse_if_any();
-  const Subject given = make_subject(mesh, plc, options);
+  const MeshToCheck given = make_mesh_to_check(mesh, plc, options);
   if (!check_points(given, findings)) refuse_if_any();
   std::optional<TetMesh> placed = place_by_position(given, report, findings);
   TetMesh result = mesh;
   if (placed) result = std::move(*placed);
   if (!check_labels(result, plc, findings)) refuse_if_any();
-  Subject subject = make_subject(result, plc, options);
-  judge(subject, report, findings, execution);
+  MeshToCheck to_check = make_mesh_to_check(result, plc, options);
+  judge(to_check, report, findings, execution);
   refuse_if_any();
-  result.features = features_of(subject);
-  result.face_patch = std::move(subject.match.face_patch);
-  result.edge_curve = std::move(subject.match.edge_curve);
+  result.features = features_of(to_check);
+  result.face_patch = std::move(to_check.match.face_patch);
+  result.edge_curve = std::move(to_check.match.edge_curve);
   return result;
 }
 

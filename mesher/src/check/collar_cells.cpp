@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
-#include "check/subject.h"
+#include "check/mesh_to_check.h"
 #include "collarmesh/plc_builder.h"
 
 namespace collarmesh::checks {
@@ -12,23 +12,23 @@ namespace {
 
 class CreaseCorners {
  public:
-  explicit CreaseCorners(const Subject& subject) : on_crease_(subject.mesh.points.size(), false) {
-    const Plc& plc = subject.plc;
+  explicit CreaseCorners(const MeshToCheck& to_check) : on_crease_(to_check.mesh.points.size(), false) {
+    const Plc& plc = to_check.plc;
     std::vector<bool> is_crease(plc.curves.size(), false);
     const auto add_vertex = [&](Index vertex) {
-      if (vertex != none && subject.match.vertex_point[vertex] != none)
-        on_crease_[subject.match.vertex_point[vertex]] = true;
+      if (vertex != none && to_check.match.vertex_point[vertex] != none)
+        on_crease_[to_check.match.vertex_point[vertex]] = true;
     };
-    for (const Crease& crease : find_creases(plc, subject.options.bounds.crease_angle)) {
+    for (const Crease& crease : find_creases(plc, to_check.options.bounds.crease_angle)) {
       add_vertex(crease.vertex);
       if (crease.curve == none) continue;
       is_crease[crease.curve] = true;
       for (const Index end : plc.curves[crease.curve].ends) add_vertex(end);
     }
-    for (Index e = 0; e < subject.mesh.edges.size(); ++e) {
-      const Index curve = subject.match.edge_curve[e];
+    for (Index e = 0; e < to_check.mesh.edges.size(); ++e) {
+      const Index curve = to_check.match.edge_curve[e];
       if (curve == none || !is_crease[curve]) continue;
-      const auto& [a, b] = subject.mesh.edges[e];
+      const auto& [a, b] = to_check.mesh.edges[e];
       edges_.push_back(sorted(a, b));
       on_crease_[a] = on_crease_[b] = true;
     }
@@ -78,35 +78,36 @@ bool is_coarsened(const TetMesh& mesh, const CreaseCorners& creases) {
   return false;
 }
 
-void add_wrong_mark(const Subject& subject, Index tet, std::uint8_t kind, Findings& findings) {
+void add_wrong_mark(const MeshToCheck& to_check, Index tet, std::uint8_t kind, Findings& findings) {
   constexpr std::array names{"no cell", "a star", "a book"};
   const Point where =
-      0.5 * (subject.point(subject.mesh.tets[tet][0]) + subject.point(subject.mesh.tets[tet][1]));
+      0.5 * (to_check.point(to_check.mesh.tets[tet][0]) + to_check.point(to_check.mesh.tets[tet][1]));
   findings.add(guarantee::collar_cells, where, {tet},
                "Tet {} at {} is marked as {} of a collar, but is {} around a crease of the complex where "
                "features meet below {:.6g} degrees; give the crease angle that the mesh was made with, or "
                "correct the mark.",
-               tet, At{where}, names[std::min<std::size_t>(subject.mesh.tet_collar[tet], 2)],
-               kind == 0 ? "none" : names[kind], subject.options.bounds.crease_angle);
+               tet, At{where}, names[std::min<std::size_t>(to_check.mesh.tet_collar[tet], 2)],
+               kind == 0 ? "none" : names[kind], to_check.options.bounds.crease_angle);
 }
 
 }  // namespace
 
-void find_collar_cells(Subject& subject, Findings& findings) {
-  assert(subject.is_matched());
-  const TetMesh& mesh = subject.mesh;
+void find_collar_cells(MeshToCheck& to_check, Findings& findings) {
+  assert(to_check.is_matched());
+  const TetMesh& mesh = to_check.mesh;
   const bool marked = any_of(mesh.tet_collar);
-  subject.collar.assign(mesh.tets.size(), 0);
+  to_check.collar.assign(mesh.tets.size(), 0);
   if (!marked && !mesh.features.empty() && !any_of(mesh.tet_thin)) return;  // the mesh has no collars
-  const CreaseCorners creases(subject);
-  subject.coarsened = is_coarsened(mesh, creases);
+  const CreaseCorners creases(to_check);
+  to_check.coarsened = is_coarsened(mesh, creases);
   for (Index t = 0; t < mesh.tets.size(); ++t) {
-    if (marked && mesh.tet_collar[t] == 0 && !subject.coarsened) continue;
-    if (subject.has_layers() && mesh.layers.tet_layer[t] > 0) continue;  // tets in layers belong to no collar
-    subject.collar[t] =
-        subject.coarsened ? creases.kind_of_touching(mesh.tets[t]) : creases.kind_in_balls(mesh.tets[t]);
-    if (marked && subject.collar[t] != mesh.tet_collar[t])
-      add_wrong_mark(subject, t, subject.collar[t], findings);
+    if (marked && mesh.tet_collar[t] == 0 && !to_check.coarsened) continue;
+    if (to_check.has_layers() && mesh.layers.tet_layer[t] > 0)
+      continue;  // tets in layers belong to no collar
+    to_check.collar[t] =
+        to_check.coarsened ? creases.kind_of_touching(mesh.tets[t]) : creases.kind_in_balls(mesh.tets[t]);
+    if (marked && to_check.collar[t] != mesh.tet_collar[t])
+      add_wrong_mark(to_check, t, to_check.collar[t], findings);
   }
 }
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "check/subject.h"
+#include "check/mesh_to_check.h"
 #include "common/box_tree.h"
 #include "common/distances.h"
 #include "common/segments.h"
@@ -20,11 +20,11 @@ double to_triangle(const Point& p, const std::array<Point, 3>& t) {
 
 class CollarCheck {
  public:
-  CollarCheck(const Subject& subject, Findings& findings)
-      : subject_(subject),
-        plc_(subject.plc),
-        balls_(subject.mesh.collar_balls),
-        ball_at_(subject.mesh.points.size(), none),
+  CollarCheck(const MeshToCheck& to_check, Findings& findings)
+      : to_check_(to_check),
+        plc_(to_check.plc),
+        balls_(to_check.mesh.collar_balls),
+        ball_at_(to_check.mesh.points.size(), none),
         overlapping_(balls_.size()),
         findings_(findings) {
     for (Index b = 0; b < balls_.size(); ++b) ball_at_[balls_[b].point] = b;
@@ -50,17 +50,17 @@ class CollarCheck {
   const Point& centre(Index ball) const { return balls_[ball].centre; }
   double radius(Index ball) const { return balls_[ball].radius; }
   const TetMesh::VertexFeature& feature_of(Index ball) const {
-    return subject_.mesh.features[balls_[ball].point];
+    return to_check_.mesh.features[balls_[ball].point];
   }
 
   // Checks where the centres are. A vertex of the complex stays where it is; a point on a curve may move onto
   // exact geometry, within the distance tolerance.
   void check_centres() {
     for (Index b = 0; b < balls_.size(); ++b) {
-      const Point& now = subject_.point(balls_[b].point);
+      const Point& now = to_check_.point(balls_[b].point);
       const double way = distance(centre(b), now);
       const double allowed =
-          subject_.rounding + (feature_of(b).dimension == 0 ? 0 : subject_.tolerance.largest());
+          to_check_.rounding + (feature_of(b).dimension == 0 ? 0 : to_check_.tolerance.largest());
       if (way <= allowed) continue;
       findings_.add(
           guarantee::collar_centre, now, {balls_[b].point},
@@ -74,14 +74,14 @@ class CollarCheck {
   void collect_elements() {
     for (Index v = 0; v < plc_.vertices.size(); ++v) {
       const Index p = plc_.vertices[v].point;
-      if (!vertex_is_outside(subject_, v)) elements_.push_back({0, v, {p, p, p}});
+      if (!vertex_is_outside(to_check_, v)) elements_.push_back({0, v, {p, p, p}});
     }
     for (Index c = 0; c < plc_.curves.size(); ++c) {
-      if (curve_is_outside(subject_, c)) continue;
+      if (curve_is_outside(to_check_, c)) continue;
       visit_segments(plc_.curves[c], [&](Index a, Index b) { elements_.push_back({1, c, {a, b, a}}); });
     }
     for (const Plc::Triangle& t : plc_.triangles)
-      if (!patch_is_outside(subject_, t.patch)) elements_.push_back({2, t.patch, t.points});
+      if (!patch_is_outside(to_check_, t.patch)) elements_.push_back({2, t.patch, t.points});
   }
 
   bool contains(const Element& element, const TetMesh::VertexFeature& v) const {
@@ -122,7 +122,7 @@ class CollarCheck {
     const std::array<Point, 3> t{plc_.points[element.points[0]], plc_.points[element.points[1]],
                                  plc_.points[element.points[2]]};
     const double gap = to_triangle(centre(ball), t);
-    if (gap >= gap_per_radius * radius(ball) * distance_slack - subject_.rounding) return;
+    if (gap >= gap_per_radius * radius(ball) * distance_slack - to_check_.rounding) return;
     static constexpr const char* kinds[] = {"vertex", "curve", "patch"};
     findings_.add(
         guarantee::collar_gap, centre(ball), {balls_[ball].point},
@@ -155,7 +155,7 @@ class CollarCheck {
 
   // Checks the circles of consecutive balls, whose centres are joined by an edge on their crease.
   void check_circles() {
-    for (const auto& [p, q] : subject_.mesh.edges) {
+    for (const auto& [p, q] : to_check_.mesh.edges) {
       const Index a = ball_at_[p], b = ball_at_[q];
       if (a == none || b == none || !of_one_crease(a, b)) continue;
       const double d = distance(centre(a), centre(b));
@@ -189,12 +189,12 @@ class CollarCheck {
   // Checks that the corners of a star include the centre of its ball, and those of a book the centres of two
   // consecutive balls.
   void check_cells() {
-    const TetMesh& mesh = subject_.mesh;
+    const TetMesh& mesh = to_check_.mesh;
     for (Index t = 0; t < mesh.tets.size(); ++t) {
       const auto centres = std::count_if(mesh.tets[t].begin(), mesh.tets[t].end(),
                                          [&](Index p) { return ball_at_[p] != none; });
       if (centres == mesh.tet_collar[t]) continue;
-      const Point where = 0.5 * (subject_.point(mesh.tets[t][0]) + subject_.point(mesh.tets[t][1]));
+      const Point where = 0.5 * (to_check_.point(mesh.tets[t][0]) + to_check_.point(mesh.tets[t][1]));
       findings_.add(guarantee::collar_cells, where, {t},
                     "Tet {} at {} has {} corners that are centres of collars' balls, but its mark demands "
                     "{}; a cell is missing or marked wrongly.",
@@ -202,7 +202,7 @@ class CollarCheck {
     }
   }
 
-  const Subject& subject_;
+  const MeshToCheck& to_check_;
   const Plc& plc_;
   const std::vector<TetMesh::CollarBall>& balls_;
   std::vector<Index> ball_at_;                   // by mesh point
@@ -213,8 +213,8 @@ class CollarCheck {
 
 }  // namespace
 
-void check_collars(const Subject& subject, Findings& findings) {
-  if (!subject.mesh.collar_balls.empty()) CollarCheck(subject, findings).run();
+void check_collars(const MeshToCheck& to_check, Findings& findings) {
+  if (!to_check.mesh.collar_balls.empty()) CollarCheck(to_check, findings).run();
 }
 
 }  // namespace collarmesh::checks

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "check/subject.h"
+#include "check/mesh_to_check.h"
 #include "common/edge_key.h"
 #include "common/median.h"
 #include "common/simplices_at_vertex.h"
@@ -17,13 +17,14 @@ namespace {
 
 class ConformityCheck {
  public:
-  ConformityCheck(const Subject& subject, Findings& findings) : subject_(subject), findings_(findings) {}
+  ConformityCheck(const MeshToCheck& to_check, Findings& findings)
+      : to_check_(to_check), findings_(findings) {}
 
   /// Returns whether a triangle needs no closer look: it is a side of two tets of one region, one on either
   /// side, and is no listed face. Most triangles are like this.
-  static bool is_plain(const Subject& subject, std::span<const TriangleUse> uses) {
+  static bool is_plain(const MeshToCheck& to_check, std::span<const TriangleUse> uses) {
     return uses.size() == 2 && !uses[1].listed() && uses[0].odd != uses[1].odd &&
-           subject.mesh.tet_region[uses[0].cell] == subject.mesh.tet_region[uses[1].cell];
+           to_check.mesh.tet_region[uses[0].cell] == to_check.mesh.tet_region[uses[1].cell];
   }
 
   void triangle(Index smallest, std::span<const TriangleUse> uses) {
@@ -42,13 +43,13 @@ class ConformityCheck {
   void collect_sides(std::span<const TriangleUse> sides) {
     sides_.clear();
     for (const TriangleUse& use : sides) {
-      const auto twin = std::find_if(sides_.begin(), sides_.end(), [&](const TriangleUse& other) {
+      const auto duplicate = std::find_if(sides_.begin(), sides_.end(), [&](const TriangleUse& other) {
         return other.odd == use.odd && opposite(other) == opposite(use);
       });
-      if (twin == sides_.end())
+      if (duplicate == sides_.end())
         sides_.push_back(use);
       else if (opposite(use) > corners_[2])  // each tet once, not for each of its four sides
-        report_twins(twin->cell, use.cell);
+        report_duplicates(duplicate->cell, use.cell);
     }
   }
 
@@ -103,7 +104,7 @@ class ConformityCheck {
     std::array<Index, 2> regions{0, 0};
     for (const TriangleUse& side : sides_) regions[side.odd == listed.odd ? 0 : 1] = region(side);
     const Index face = listed.cell;
-    const auto& given = subject_.mesh.face_regions[face];
+    const auto& given = to_check_.mesh.face_regions[face];
     if (given == regions) return;
     findings_.add(
         guarantee::face_regions, where(), {face},
@@ -112,17 +113,17 @@ class ConformityCheck {
         face, corners_[0], corners_[1], corners_[2], At{where()}, given[0], given[1], regions[0], regions[1]);
   }
 
-  void report_twins(Index first, Index second) {
+  void report_duplicates(Index first, Index second) {
     findings_.add(guarantee::distinct_tets, where(), {first, second},
                   "Tets {} and {} at {} have the same four corners; list the tet once.", first, second,
                   At{where()});
   }
 
-  Index opposite(const TriangleUse& side) const { return subject_.mesh.tets[side.cell][side.corner]; }
-  Index region(const TriangleUse& side) const { return subject_.mesh.tet_region[side.cell]; }
-  Point where() const { return subject_.centroid(corners_); }
+  Index opposite(const TriangleUse& side) const { return to_check_.mesh.tets[side.cell][side.corner]; }
+  Index region(const TriangleUse& side) const { return to_check_.mesh.tet_region[side.cell]; }
+  Point where() const { return to_check_.centroid(corners_); }
 
-  const Subject& subject_;
+  const MeshToCheck& to_check_;
   Findings& findings_;
   std::array<Index, 3> corners_{};
   std::vector<TriangleUse> sides_;
@@ -153,8 +154,8 @@ void add_edges(const std::array<Index, 3>& face, Index region, int direction,
 }  // namespace
 
 // Scans the vertices with all threads, then judges triangles that need a closer look in their order.
-void check_conformity(const Subject& subject, CheckReport& report, Findings& findings) {
-  const TetMesh& mesh = subject.mesh;
+void check_conformity(const MeshToCheck& to_check, CheckReport& report, Findings& findings) {
+  const TetMesh& mesh = to_check.mesh;
   struct NotPlain {
     Index smallest;
     TriangleUse use;
@@ -177,7 +178,7 @@ void check_conformity(const Subject& subject, CheckReport& report, Findings& fin
     if (found.tets.fit()) return;
     found.triangles.find(mesh, vertex, cells);
     found.triangles.for_each([&](std::span<const TriangleUse> uses) {
-      if (ConformityCheck::is_plain(subject, uses)) return;
+      if (ConformityCheck::is_plain(to_check, uses)) return;
       for (const TriangleUse& use : uses) found.not_plain.push_back({vertex, use});
     });
   });
@@ -190,7 +191,7 @@ void check_conformity(const Subject& subject, CheckReport& report, Findings& fin
   report.median_edge = median(lengths);
   std::stable_sort(all.begin(), all.end(),
                    [](const NotPlain& a, const NotPlain& b) { return a.triangle() < b.triangle(); });
-  ConformityCheck check(subject, findings);
+  ConformityCheck check(to_check, findings);
   std::vector<TriangleUse> uses;
   for (std::size_t i = 0, end = 0; i < all.size(); i = end) {
     uses.clear();
@@ -201,8 +202,8 @@ void check_conformity(const Subject& subject, CheckReport& report, Findings& fin
 
 // Checks that the faces of a region, turned outwards, have no boundary: every edge is passed equally often in
 // both directions.
-void check_watertight(const Subject& subject, Findings& findings) {
-  const TetMesh& mesh = subject.mesh;
+void check_watertight(const MeshToCheck& to_check, Findings& findings) {
+  const TetMesh& mesh = to_check.mesh;
   std::vector<BoundaryEdge> edges;
   for (Index f = 0; f < mesh.faces.size(); ++f) {
     if (mesh.face_regions[f][0] == mesh.face_regions[f][1]) continue;
@@ -215,7 +216,7 @@ void check_watertight(const Subject& subject, Findings& findings) {
     for (j = i; j < edges.size() && edges[j].same_edge(edges[i]); ++j) sum += edges[j].direction;
     if (sum == 0) continue;
     const auto& [a, b] = edges[i].ends;
-    const Point where = subject.midpoint(edges[i].ends);
+    const Point where = to_check.midpoint(edges[i].ends);
     findings.add(
         guarantee::watertight, where, {a, b, edges[i].region},
         "The faces around region {} do not close at the edge of points {} and {} at {}: they run "

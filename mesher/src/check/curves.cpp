@@ -3,8 +3,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "check/mesh_to_check.h"
 #include "check/polyline.h"
-#include "check/subject.h"
 
 namespace collarmesh::checks {
 
@@ -36,19 +36,20 @@ void mark_edges_of_tets(const TetMesh& mesh, std::vector<ListedEdge>& edges) {
 // The edges of one curve, walked from end to end.
 class CurveCheck {
  public:
-  CurveCheck(const Subject& subject, Index curve, const Index* first, const Index* last, CheckReport& report,
-             Findings& findings)
-      : subject_(subject),
-        curve_(subject.plc.curves[curve]),
+  CurveCheck(const MeshToCheck& to_check, Index curve, const Index* first, const Index* last,
+             CheckReport& report, Findings& findings)
+      : to_check_(to_check),
+        curve_(to_check.plc.curves[curve]),
         id_(curve),
         edges_(first, last),
-        allowed_(subject.curve_allowance[curve]),
+        allowed_(to_check.curve_allowance[curve]),
         report_(report),
         findings_(findings) {}
 
   void run() {
     if (edges_.empty()) {
-      if (!curve_is_outside(subject_, id_)) report_gap(subject_.plc.points[curve_.points[0]], "has no edges");
+      if (!curve_is_outside(to_check_, id_))
+        report_gap(to_check_.plc.points[curve_.points[0]], "has no edges");
       return;
     }
     if (!curve_.closed && (end_point(0) == none || end_point(1) == none)) return;  // a vertex is missing
@@ -57,7 +58,7 @@ class CurveCheck {
 
  private:
   bool is_loop() const { return curve_.closed || curve_.ends[0] == curve_.ends[1]; }
-  Index end_point(unsigned i) const { return subject_.match.vertex_point[curve_.ends[i]]; }
+  Index end_point(unsigned i) const { return to_check_.match.vertex_point[curve_.ends[i]]; }
 
   void report_gap(const Point& where, const std::string& what) {
     findings_.add(guarantee::curve_cover, where, {id_},
@@ -70,7 +71,7 @@ class CurveCheck {
   bool find_chain() {
     std::vector<std::array<Index, 2>> ends;  // point, edge
     for (const Index e : edges_)
-      for (const Index p : subject_.mesh.edges[e]) ends.push_back({p, e});
+      for (const Index p : to_check_.mesh.edges[e]) ends.push_back({p, e});
     std::sort(ends.begin(), ends.end());
     if (!check_degrees(ends)) return false;
     const Index start = curve_.closed ? ends[0][0] : end_point(0);
@@ -81,13 +82,13 @@ class CurveCheck {
       if (next != ends.end() && (*next)[0] == at && (*next)[1] == by) ++next;
       if (next == ends.end() || (*next)[0] != at) break;
       by = (*next)[1];
-      const auto& edge = subject_.mesh.edges[by];
+      const auto& edge = to_check_.mesh.edges[by];
       at = edge[0] == at ? edge[1] : edge[0];
       chain_.push_back(at);
       if (is_loop() && at == start) break;
     }
     if (chain_.size() == edges_.size() + 1) return true;
-    report_gap(subject_.point(chain_.back()),
+    report_gap(to_check_.point(chain_.back()),
                fmt::format("has {} edges beyond the end of its chain", edges_.size() + 1 - chain_.size()));
     return false;
   }
@@ -102,7 +103,7 @@ class CurveCheck {
       const auto degree = degree_at(point);
       if (degree == expected) return;
       good = false;
-      report_gap(subject_.point(point), fmt::format("has {} edges, not {},", degree, expected));
+      report_gap(to_check_.point(point), fmt::format("has {} edges, not {},", degree, expected));
     };
     if (!curve_.closed)
       for (unsigned i = 0; i < (is_loop() ? 1 : 2); ++i) expect(end_point(i), is_loop() ? 2 : 1);
@@ -119,12 +120,12 @@ class CurveCheck {
   // curve's direction.
   Polyline make_polyline() {
     std::vector<Point> points;
-    for (const Index i : curve_.points) points.push_back(subject_.plc.points[i]);
+    for (const Index i : curve_.points) points.push_back(to_check_.plc.points[i]);
     if (curve_.closed) points.push_back(points.front());
     Polyline polyline(std::move(points));
-    if (curve_.closed) polyline = polyline.started_at(polyline.nearest(subject_.point(chain_[0])).arc);
-    if (is_loop() && polyline.nearest(subject_.point(chain_[1])).arc >
-                         polyline.nearest(subject_.point(chain_[chain_.size() - 2])).arc)
+    if (curve_.closed) polyline = polyline.started_at(polyline.nearest(to_check_.point(chain_[0])).arc);
+    if (is_loop() && polyline.nearest(to_check_.point(chain_[1])).arc >
+                         polyline.nearest(to_check_.point(chain_[chain_.size() - 2])).arc)
       std::reverse(chain_.begin(), chain_.end());
     return polyline;
   }
@@ -132,7 +133,7 @@ class CurveCheck {
   void compare(const Polyline& polyline) {
     double arc = 0;
     for (std::size_t i = 1; i < chain_.size(); ++i) {
-      const Point &a = subject_.point(chain_[i - 1]), &b = subject_.point(chain_[i]);
+      const Point &a = to_check_.point(chain_[i - 1]), &b = to_check_.point(chain_[i]);
       const bool last = i + 1 == chain_.size();
       // The next point is searched on this part only: an arc that stays close to its chord is not much longer
       // than the chord.
@@ -156,7 +157,7 @@ class CurveCheck {
 
   // Checks the two-sided distance between an edge of the chain and its part of the curve.
   void compare_edge(const Polyline& polyline, double from, double to, std::size_t i) {
-    const Point &a = subject_.point(chain_[i - 1]), &b = subject_.point(chain_[i]);
+    const Point &a = to_check_.point(chain_[i - 1]), &b = to_check_.point(chain_[i]);
     const auto corners = polyline.corners_between(from, to);
     for (std::size_t k = corners.first; k < corners.last; ++k)
       measure(nearest_on_segment(polyline.points()[k], a, b).distance, chain_[i], polyline.points()[k]);
@@ -178,7 +179,7 @@ class CurveCheck {
                         : "use a smaller size there or allow a larger distance");
   }
 
-  const Subject& subject_;
+  const MeshToCheck& to_check_;
   const Plc::Curve& curve_;
   Index id_;
   std::vector<Index> edges_;
@@ -190,9 +191,9 @@ class CurveCheck {
 
 }  // namespace
 
-void check_listed_edges(const Subject& subject, Findings& findings) {
-  assert(subject.is_matched());
-  const TetMesh& mesh = subject.mesh;
+void check_listed_edges(const MeshToCheck& to_check, Findings& findings) {
+  assert(to_check.is_matched());
+  const TetMesh& mesh = to_check.mesh;
   std::vector<ListedEdge> edges;
   for (Index e = 0; e < mesh.edges.size(); ++e)
     edges.push_back({sorted(mesh.edges[e][0], mesh.edges[e][1]), e});
@@ -200,7 +201,7 @@ void check_listed_edges(const Subject& subject, Findings& findings) {
   mark_edges_of_tets(mesh, edges);
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const auto& [ends, edge, in_tet] = edges[i];
-    const Point where = subject.midpoint(ends);
+    const Point where = to_check.midpoint(ends);
     if (!in_tet)
       findings.add(
           guarantee::listed_edges, where, {edge},
@@ -213,24 +214,24 @@ void check_listed_edges(const Subject& subject, Findings& findings) {
   }
 }
 
-void check_curves(const Subject& subject, CheckReport& report, Findings& findings) {
-  assert(subject.is_matched());
-  const TetMesh& mesh = subject.mesh;
+void check_curves(const MeshToCheck& to_check, CheckReport& report, Findings& findings) {
+  assert(to_check.is_matched());
+  const TetMesh& mesh = to_check.mesh;
   for (Index e = 0; e < mesh.edges.size(); ++e) {
-    const Index curve = subject.match.edge_curve[e];
-    const Point where = subject.midpoint(mesh.edges[e]);
+    const Index curve = to_check.match.edge_curve[e];
+    const Point where = to_check.midpoint(mesh.edges[e]);
     if (curve == none)
       findings.add(guarantee::curve_tag, where, {e},
                    "Edge {} at {} has tag {}, which no curve of the complex has; correct the tag.", e,
                    At{where}, mesh.edge_tag[e]);
-    else if (mesh.edge_tag[e] != subject.plc.curves[curve].tag)
+    else if (mesh.edge_tag[e] != to_check.plc.curves[curve].tag)
       findings.add(guarantee::curve_tag, where, {e},
                    "Edge {} at {} has tag {}, its curve {} has {}; correct the tag or the curve.", e,
-                   At{where}, mesh.edge_tag[e], curve, subject.plc.curves[curve].tag);
+                   At{where}, mesh.edge_tag[e], curve, to_check.plc.curves[curve].tag);
   }
-  const Grouping by_curve(subject.match.edge_curve, subject.plc.curves.size());
-  for (Index c = 0; c < subject.plc.curves.size(); ++c)
-    CurveCheck(subject, c, by_curve.begin(c), by_curve.end(c), report, findings).run();
+  const Grouping by_curve(to_check.match.edge_curve, to_check.plc.curves.size());
+  for (Index c = 0; c < to_check.plc.curves.size(); ++c)
+    CurveCheck(to_check, c, by_curve.begin(c), by_curve.end(c), report, findings).run();
 }
 
 }  // namespace collarmesh::checks

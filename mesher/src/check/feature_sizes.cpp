@@ -58,24 +58,24 @@ double area_of_face(const TetMesh& mesh, Index face) {
                            : collarmesh::area(curved_face(mesh, face));
 }
 
-ShapeMeasures feature_sizes(const Subject& subject) {
-  assert(subject.is_matched());
-  const TetMesh& mesh = subject.mesh;
+ShapeMeasures feature_sizes(const MeshToCheck& to_check) {
+  assert(to_check.is_matched());
+  const TetMesh& mesh = to_check.mesh;
   ShapeMeasures sizes{{},
-                      std::vector<double>(subject.plc.patches.size(), 0),
-                      std::vector<double>(subject.plc.curves.size(), 0),
+                      std::vector<double>(to_check.plc.patches.size(), 0),
+                      std::vector<double>(to_check.plc.curves.size(), 0),
                       {}};
   for (Index face = 0; face < mesh.faces.size(); ++face)
-    if (const Index patch = subject.match.face_patch[face]; patch != none)
+    if (const Index patch = to_check.match.face_patch[face]; patch != none)
       sizes.areas[patch] += area_of_face(mesh, face);
   for (Index edge = 0; edge < mesh.edges.size(); ++edge)
-    if (const Index curve = subject.match.edge_curve[edge]; curve != none)
+    if (const Index curve = to_check.match.edge_curve[edge]; curve != none)
       sizes.lengths[curve] += length_of_edge(mesh, edge);
   return sizes;
 }
 
-AllowedArea planar_area(const Subject& subject, Index patch) {
-  const Plc& plc = subject.plc;
+AllowedArea planar_area(const MeshToCheck& to_check, Index patch) {
+  const Plc& plc = to_check.plc;
   const Plc::Patch& on = plc.patches[patch];
   long double sum = 0;
   for (Index t = on.first_triangle; t < on.first_triangle + on.triangle_count; ++t) {
@@ -84,38 +84,38 @@ AllowedArea planar_area(const Subject& subject, Index patch) {
   }
   const double area = std::fabs(static_cast<double>(sum));
   double allowed = 1e-9 * area;
-  for (const Index c : on.curves) allowed += subject.curve_allowance[c] * length_of(plc, plc.curves[c]);
+  for (const Index c : on.curves) allowed += to_check.curve_allowance[c] * length_of(plc, plc.curves[c]);
   return {area, allowed};
 }
 
-ShapeMeasures input_sizes(const Subject& subject) {
-  ShapeMeasures sizes = measures_of(subject.plc);
-  const ShapeMeasures& exact = subject.options.exact;
+ShapeMeasures input_sizes(const MeshToCheck& to_check) {
+  ShapeMeasures sizes = measures_of(to_check.plc);
+  const ShapeMeasures& exact = to_check.options.exact;
   take_exact(exact.volumes, sizes.volumes);
   take_exact(exact.areas, sizes.areas);
   take_exact(exact.lengths, sizes.lengths);
   return sizes;
 }
 
-void measure_without_tets(const Subject& subject, int dimension, CheckReport& report) {
-  report.of_input = input_sizes(subject);
-  report.of_mesh = feature_sizes(subject);
+void measure_without_tets(const MeshToCheck& to_check, int dimension, CheckReport& report) {
+  report.of_input = input_sizes(to_check);
+  report.of_mesh = feature_sizes(to_check);
   for (ShapeMeasures* sizes : {&report.of_input, &report.of_mesh}) {
     sizes->volumes.clear();
     sizes->shells.clear();
     if (dimension == 1) sizes->areas.clear();
   }
-  std::vector<double> lengths = lengths_of_sides(subject.mesh, dimension);
+  std::vector<double> lengths = lengths_of_sides(to_check.mesh, dimension);
   report.median_edge = median(lengths);
 }
 
-void check_present(const Subject& subject, int dimension, Findings& findings) {
-  const Plc& plc = subject.plc;
-  const Grouping by_patch(subject.match.face_patch, plc.patches.size()),
-      by_curve(subject.match.edge_curve, plc.curves.size());
+void check_present(const MeshToCheck& to_check, int dimension, Findings& findings) {
+  const Plc& plc = to_check.plc;
+  const Grouping by_patch(to_check.match.face_patch, plc.patches.size()),
+      by_curve(to_check.match.edge_curve, plc.curves.size());
   for (Index p = 0; dimension == 2 && p < plc.patches.size(); ++p) {
     if (by_patch.size(p) > 0) continue;
-    const Point& where = subject.plc_corner(plc.triangles[plc.patches[p].first_triangle], 0);
+    const Point& where = to_check.plc_corner(plc.triangles[plc.patches[p].first_triangle], 0);
     findings.add(
         guarantee::patch_present, where, {p},
         "Patch {} (tag {}) at {} has no faces; it was lost, or its faces are tagged with another patch.", p,
@@ -131,7 +131,7 @@ void check_present(const Subject& subject, int dimension, Findings& findings) {
   }
   for (Index v = 0; v < plc.vertices.size(); ++v) {
     const Plc::Vertex& vertex = plc.vertices[v];
-    if (subject.match.vertex_point[v] != none) continue;
+    if (to_check.match.vertex_point[v] != none) continue;
     if (dimension == 2 ? vertex.patches.empty() : vertex.curves.empty()) continue;
     const Point& where = plc.points[vertex.point];
     findings.add(guarantee::vertex_present, where, {v}, "Vertex {} (tag {}) at {} is no point of the mesh.",

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "check/subject.h"
+#include "check/mesh_to_check.h"
 
 namespace collarmesh::checks {
 
@@ -13,9 +13,9 @@ CurvedTriangle curved_face(const TetMesh& mesh, Index face);
 double length_of_edge(const TetMesh& mesh, Index edge);
 double area_of_face(const TetMesh& mesh, Index face);
 
-/// Returns the areas of patches and the lengths of curves in the mesh. Precondition: subject.match is filled
+/// Returns the areas of patches and the lengths of curves in the mesh. Precondition: to_check.match is filled
 /// in.
-ShapeMeasures feature_sizes(const Subject& subject);
+ShapeMeasures feature_sizes(const MeshToCheck& to_check);
 
 /// An area, and the allowed difference of the mesh's area from it.
 struct AllowedArea {
@@ -27,18 +27,18 @@ struct AllowedArea {
 /// they are narrower than the tolerance. (The sum of unprojected areas would not do: tilting by an angle t
 /// increases it by about t^2 / 2, and that of needles by any factor.) Areas may therefore differ by the
 /// length of the border times the distance that it may move, and by rounding.
-AllowedArea planar_area(const Subject& subject, Index patch);
+AllowedArea planar_area(const MeshToCheck& to_check, Index patch);
 
 /// Returns the sizes of the features of the complex; replaces them by those of the exact geometry where these
 /// are known.
-ShapeMeasures input_sizes(const Subject& subject);
+ShapeMeasures input_sizes(const MeshToCheck& to_check);
 
 /// Fills in the report for a mesh without tets: the sizes of the features up to a dimension (1 or 2), in the
 /// complex and in the mesh, and the median length of the mesh's edges.
-void measure_without_tets(const Subject& subject, int dimension, CheckReport& report);
+void measure_without_tets(const MeshToCheck& to_check, int dimension, CheckReport& report);
 
 /// Finds patches, curves and vertices of the complex that are missing in a mesh without tets, of dimension 1
 /// or 2.
-void check_present(const Subject& subject, int dimension, Findings& findings);
+void check_present(const MeshToCheck& to_check, int dimension, Findings& findings);
 
 }  // namespace collarmesh::checks

@@ -9,9 +9,9 @@
 /// 1. Give it a name here, or in the header of its part: layer_cells.h, layer_walls.h, periodic.h. If meshes
 ///    with other target sizes may miss it although they follow the shape, list it in `of_shapes`.
 /// 2. If it concerns single tets or nodes, write a predicate into predicates.h and call it from tets.cpp or
-///    second_order.cpp. Otherwise declare a check in subject.h and call it from `judge` in check.cpp, for
-///    meshes of triangles alone from `judge_shells` in shells.cpp, of curve edges alone from `judge_lines` in
-///    lines.cpp.
+///    second_order.cpp. Otherwise declare a check in mesh_to_check.h and call it from `judge` in check.cpp,
+///    for meshes of triangles alone from `judge_shells` in shells.cpp, of curve edges alone from
+///    `judge_lines` in lines.cpp.
 /// 3. Under MPI nothing of this runs by itself: call the predicate from `Certification` in
 ///    distributed/src/certify.cpp, for tets in `check_tets`, for nodes in `check_points`. `gather` collects
 ///    the findings of all ranks. A measure of the whole mesh is summed in `sum_up` and judged in

@@ -2,12 +2,12 @@
 #include <algorithm>
 #include <vector>
 
-#include "check/subject.h"
+#include "check/mesh_to_check.h"
 
 namespace collarmesh::checks {
 
-void check_interior_nodes(const Subject& subject, CheckReport& report, Findings& findings) {
-  const TetMesh& mesh = subject.mesh;
+void check_interior_nodes(const MeshToCheck& to_check, CheckReport& report, Findings& findings) {
+  const TetMesh& mesh = to_check.mesh;
   std::vector<bool> on_face(mesh.points.size(), false);
   for (const auto& face : mesh.faces)
     for (const Index v : face) on_face[v] = true;
@@ -15,7 +15,7 @@ void check_interior_nodes(const Subject& subject, CheckReport& report, Findings&
     const auto& [a, b, c, d] = mesh.tets[t];
     if (!on_face[a] || !on_face[b] || !on_face[c] || !on_face[d]) continue;
     ++report.surface_tets;
-    if (!subject.options.bounds.interior_node) continue;
+    if (!to_check.options.bounds.interior_node) continue;
     const Point where = 0.25 * ((mesh.points[a] + mesh.points[b]) + (mesh.points[c] + mesh.points[d]));
     findings.add(guarantee::interior_node, where, {t},
                  "Tet {} at {} has all corners on boundaries, interfaces or internal patches; a smaller size "

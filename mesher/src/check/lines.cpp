@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "check/feature_sizes.h"
-#include "check/subject.h"
+#include "check/mesh_to_check.h"
 #include "common/thread_limit.h"
 
 namespace collarmesh {
@@ -12,13 +12,13 @@ namespace checks {
 
 namespace {
 
-void check_listed_once(const Subject& subject, Findings& findings) {
+void check_listed_once(const MeshToCheck& to_check, Findings& findings) {
   std::vector<std::array<Index, 2>> listed;
-  for (const auto& [a, b] : subject.mesh.edges) listed.push_back(sorted(a, b));
+  for (const auto& [a, b] : to_check.mesh.edges) listed.push_back(sorted(a, b));
   std::sort(listed.begin(), listed.end());
   for (std::size_t i = 1; i < listed.size(); ++i) {
     if (listed[i] != listed[i - 1]) continue;
-    const Point where = subject.midpoint(listed[i]);
+    const Point where = to_check.midpoint(listed[i]);
     findings.add(guarantee::listed_edges, where, {listed[i][0], listed[i][1]},
                  "The edge of points {} and {} at {} is listed twice.", listed[i][0], listed[i][1],
                  At{where});
@@ -27,8 +27,8 @@ void check_listed_once(const Subject& subject, Findings& findings) {
 
 /// Checks edges of second order. The tangent is linear in the edge's parameter, so its component along the
 /// chord is positive everywhere if it is positive at both ends.
-void check_edge_jacobians(const Subject& subject, Findings& findings) {
-  const TetMesh& mesh = subject.mesh;
+void check_edge_jacobians(const MeshToCheck& to_check, Findings& findings) {
+  const TetMesh& mesh = to_check.mesh;
   if (mesh.order() == 1) return;
   for (Index e = 0; e < mesh.edges.size(); ++e) {
     const Point &a = mesh.points[mesh.edges[e][0]], &b = mesh.points[mesh.edges[e][1]],
@@ -49,16 +49,16 @@ void judge_lines(const TetMesh& mesh, const Plc& given, const CheckOptions& opti
   for (Plc::Patch& patch : plc.patches) patch.regions = {0, 0};
   CheckOptions own = options;
   own.bounds.tolerance = tolerance_of_any_size(given, options.bounds);
-  Subject subject = make_subject(mesh, plc, own);
-  if (!check_points(subject, findings) || !check_labels(mesh, plc, findings)) return;
-  subject.match = match_features(mesh, plc, subject.rounding);
-  check_present(subject, 1, findings);
-  check_vertices(subject, findings);
-  check_listed_once(subject, findings);
-  check_curves(subject, report, findings);
-  check_second_order(subject, report, findings);
-  check_edge_jacobians(subject, findings);
-  measure_without_tets(subject, 1, report);
+  MeshToCheck to_check = make_mesh_to_check(mesh, plc, own);
+  if (!check_points(to_check, findings) || !check_labels(mesh, plc, findings)) return;
+  to_check.match = match_features(mesh, plc, to_check.rounding);
+  check_present(to_check, 1, findings);
+  check_vertices(to_check, findings);
+  check_listed_once(to_check, findings);
+  check_curves(to_check, report, findings);
+  check_second_order(to_check, report, findings);
+  check_edge_jacobians(to_check, findings);
+  measure_without_tets(to_check, 1, report);
 }
 
 }  // namespace

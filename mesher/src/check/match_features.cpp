@@ -7,7 +7,7 @@
 #include <memory>
 #include <numeric>
 
-#include "check/subject.h"
+#include "check/mesh_to_check.h"
 #include "common/disjoint_sets.h"
 #include "common/distance_tree.h"
 #include "common/segments.h"

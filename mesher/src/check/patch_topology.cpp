@@ -7,8 +7,8 @@
 
 namespace collarmesh::checks {
 
-CurveUses::CurveUses(const Subject& subject)
-    : plc_(subject.plc), edges_by_curve_(subject.match.edge_curve, subject.plc.curves.size()) {
+CurveUses::CurveUses(const MeshToCheck& to_check)
+    : plc_(to_check.plc), edges_by_curve_(to_check.match.edge_curve, to_check.plc.curves.size()) {
   std::vector<bool> at_beginning(plc_.points.size(), false);
   for (const Plc::Curve& curve : plc_.curves)
     at_beginning[curve.points[0]] = at_beginning[curve.points[1]] = true;
@@ -18,10 +18,10 @@ CurveUses::CurveUses(const Subject& subject)
       if (at_beginning[a] && at_beginning[b]) complex_edges_.push_back({a, b, t.patch});
     }
   std::sort(complex_edges_.begin(), complex_edges_.end());
-  for (Index e = 0; e < subject.mesh.edges.size(); ++e)
-    if (subject.match.edge_curve[e] != none)
+  for (Index e = 0; e < to_check.mesh.edges.size(); ++e)
+    if (to_check.match.edge_curve[e] != none)
       mesh_edges_.push_back(
-          {sorted(subject.mesh.edges[e][0], subject.mesh.edges[e][1]), subject.match.edge_curve[e]});
+          {sorted(to_check.mesh.edges[e][0], to_check.mesh.edges[e][1]), to_check.match.edge_curve[e]});
   std::sort(mesh_edges_.begin(), mesh_edges_.end());
 }
 
@@ -42,11 +42,11 @@ namespace {
 
 class TopologyCheck {
  public:
-  TopologyCheck(const Subject& subject, Index patch, const std::vector<Index>& faces, const CurveUses& uses,
-                Findings& findings)
-      : subject_(subject),
+  TopologyCheck(const MeshToCheck& to_check, Index patch, const std::vector<Index>& faces,
+                const CurveUses& uses, Findings& findings)
+      : to_check_(to_check),
         id_(patch),
-        patch_(subject.plc.patches[patch]),
+        patch_(to_check.plc.patches[patch]),
         faces_(faces),
         uses_(uses),
         findings_(findings),
@@ -69,10 +69,10 @@ class TopologyCheck {
  private:
   void add_sides(Index place) {
     const Index face = faces_[place];
-    const auto& f = subject_.mesh.faces[face];
+    const auto& f = to_check_.mesh.faces[face];
     for (unsigned i = 0; i < 3; ++i) {
       const Index a = f[i], b = f[(i + 1) % 3];
-      sides_.push_back({sorted(a, b), place, face, (a < b) != reversed(subject_, face)});
+      sides_.push_back({sorted(a, b), place, face, (a < b) != reversed(to_check_, face)});
     }
   }
 
@@ -81,9 +81,9 @@ class TopologyCheck {
   void check_edge(std::size_t first, std::size_t last) {
     const PatchEdge& side = sides_[first];
     const Index curve = uses_.curve_of(side.ends);
-    const bool of_patch = curve != none && subject_.plc.curve_on_patch(curve, id_);
+    const bool of_patch = curve != none && to_check_.plc.curve_on_patch(curve, id_);
     const std::size_t expected = of_patch ? uses_.triangles_at(curve, id_) : 2;
-    const Point where = subject_.midpoint(side.ends);
+    const Point where = to_check_.midpoint(side.ends);
     if (last - first == expected) {
       if (expected == 2 && side.ascending == sides_[first + 1].ascending)
         findings_.add(guarantee::patch_orientation, where, {side.face, sides_[first + 1].face},
@@ -115,11 +115,11 @@ class TopologyCheck {
       const std::size_t expected = uses_.triangles_at(curve, id_);
       if (expected == 0) continue;
       for (auto e = uses_.edges().begin(curve); e != uses_.edges().end(curve); ++e) {
-        const auto& edge = subject_.mesh.edges[*e];
+        const auto& edge = to_check_.mesh.edges[*e];
         const auto ends = sorted(edge[0], edge[1]);
         const auto side = std::lower_bound(sides_.begin(), sides_.end(), PatchEdge{ends, 0, 0, false});
         if (side != sides_.end() && side->ends == ends) continue;
-        const Point where = subject_.midpoint(ends);
+        const Point where = to_check_.midpoint(ends);
         findings_.add(guarantee::patch_border, where, {id_, *e},
                       "Patch {} (tag {}) has no face at edge {} of its curve {} at {}; faces are missing or "
                       "tagged with "
@@ -136,7 +136,7 @@ class TopologyCheck {
     return corner;
   }
   Index corner_at(Index place, Index point) const {
-    const auto& f = subject_.mesh.faces[faces_[place]];
+    const auto& f = to_check_.mesh.faces[faces_[place]];
     return 3 * place + static_cast<Index>(std::find(f.begin(), f.end(), point) - f.begin());
   }
   void join_fans(const PatchEdge& a, const PatchEdge& b) {
@@ -151,26 +151,26 @@ class TopologyCheck {
     std::vector<std::array<Index, 2>> fans;  // point, fan
     for (Index place = 0; place < faces_.size(); ++place)
       for (unsigned i = 0; i < 3; ++i)
-        fans.push_back({subject_.mesh.faces[faces_[place]][i], fan(3 * place + i)});
+        fans.push_back({to_check_.mesh.faces[faces_[place]][i], fan(3 * place + i)});
     sort_uniquely(fans);
     for (std::size_t i = 1; i < fans.size(); ++i) {
       const Index point = fans[i][0];
       if (fans[i - 1][0] != point || (i > 1 && fans[i - 2][0] == point) || is_vertex(point)) continue;
       findings_.add(
-          guarantee::patch_manifold, subject_.point(point), {id_, point},
+          guarantee::patch_manifold, to_check_.point(point), {id_, point},
           "The faces of patch {} (tag {}) touch in point {} at {} without sharing an edge; the surface is "
           "pinched there, use a smaller distance or size.",
-          id_, patch_.tag, point, At{subject_.point(point)});
+          id_, patch_.tag, point, At{to_check_.point(point)});
     }
   }
 
   bool is_vertex(Index point) const {
     const auto& vertices = patch_.vertices;
     return std::any_of(vertices.begin(), vertices.end(),
-                       [&](Index v) { return subject_.match.vertex_point[v] == point; });
+                       [&](Index v) { return to_check_.match.vertex_point[v] == point; });
   }
 
-  const Subject& subject_;
+  const MeshToCheck& to_check_;
   Index id_;
   const Plc::Patch& patch_;
   const std::vector<Index>& faces_;
@@ -182,9 +182,9 @@ class TopologyCheck {
 
 }  // namespace
 
-void check_patch_topology(const Subject& subject, Index patch, const std::vector<Index>& faces,
+void check_patch_topology(const MeshToCheck& to_check, Index patch, const std::vector<Index>& faces,
                           const CurveUses& uses, Findings& findings) {
-  TopologyCheck(subject, patch, faces, uses, findings).run();
+  TopologyCheck(to_check, patch, faces, uses, findings).run();
 }
 
 }  // namespace collarmesh::checks

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "check/subject.h"
+#include "check/mesh_to_check.h"
 #include "common/edge_key.h"
 
 namespace collarmesh::checks {
@@ -24,7 +24,7 @@ struct PatchEdge {
 /// The sides of patches at curves: in the complex, and among the edges of the mesh.
 class CurveUses {
  public:
-  explicit CurveUses(const Subject& subject);
+  explicit CurveUses(const MeshToCheck& to_check);
 
   /// Returns the number of triangles of the patch at each place of the curve in the complex.
   std::size_t triangles_at(Index curve, Index patch) const;
@@ -47,14 +47,14 @@ class CurveUses {
 };
 
 /// Returns whether the face is oriented against its patch: its regions are the patch's in reverse.
-inline bool reversed(const Subject& subject, Index face) {
-  const auto& given = subject.mesh.face_regions[face];
-  const auto& own = subject.plc.patches[subject.match.face_patch[face]].regions;
+inline bool reversed(const MeshToCheck& to_check, Index face) {
+  const auto& given = to_check.mesh.face_regions[face];
+  const auto& own = to_check.plc.patches[to_check.match.face_patch[face]].regions;
   return own[0] != own[1] && given[0] == own[1] && given[1] == own[0];
 }
 
 /// Checks that the faces of a patch form a surface, oriented alike, that ends at the patch's curves.
-void check_patch_topology(const Subject& subject, Index patch, const std::vector<Index>& faces,
+void check_patch_topology(const MeshToCheck& to_check, Index patch, const std::vector<Index>& faces,
                           const CurveUses& uses, Findings& findings);
 
 }  // namespace collarmesh::checks

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "check/feature_sizes.h"
+#include "check/mesh_to_check.h"
 #include "check/patch_topology.h"
 #include "check/polyline.h"
-#include "check/subject.h"
 #include "common/patch_distance.h"
 #include "common/patch_points.h"
 #include "common/sort_uniquely.h"
@@ -17,23 +17,24 @@ namespace {
 
 class PatchCheck {
  public:
-  PatchCheck(const Subject& subject, Index patch, const Index* first, const Index* last, CheckReport& report,
-             Findings& findings)
-      : subject_(subject),
+  PatchCheck(const MeshToCheck& to_check, Index patch, const Index* first, const Index* last,
+             CheckReport& report, Findings& findings)
+      : to_check_(to_check),
         id_(patch),
-        patch_(subject.plc.patches[patch]),
+        patch_(to_check.plc.patches[patch]),
         faces_(first, last),
-        allowed_(subject.patch_allowance[patch]),
-        least_allowed_(patch_.planar ? allowed_ : subject.tolerance.least_on_patch(patch) + subject.rounding),
+        allowed_(to_check.patch_allowance[patch]),
+        least_allowed_(patch_.planar ? allowed_
+                                     : to_check.tolerance.least_on_patch(patch) + to_check.rounding),
         report_(report),
         findings_(findings) {}
 
   void run(const CurveUses& uses, std::span<const Index> patch_points) {
     if (faces_.empty()) {
-      if (!patch_is_outside(subject_, id_)) report_missing();
+      if (!patch_is_outside(to_check_, id_)) report_missing();
       return;
     }
-    check_patch_topology(subject_, id_, faces_, uses, findings_);
+    check_patch_topology(to_check_, id_, faces_, uses, findings_);
     if (patch_.planar) {
       check_plane();
       check_area();
@@ -43,14 +44,14 @@ class PatchCheck {
   }
 
  private:
-  const Plc::Triangle& triangle(Index i) const { return subject_.plc.triangles[patch_.first_triangle + i]; }
+  const Plc::Triangle& triangle(Index i) const { return to_check_.plc.triangles[patch_.first_triangle + i]; }
   std::array<Point, 3> corners(Index face) const {
-    const auto& f = subject_.mesh.faces[face];
-    return {subject_.point(f[0]), subject_.point(f[1]), subject_.point(f[2])};
+    const auto& f = to_check_.mesh.faces[face];
+    return {to_check_.point(f[0]), to_check_.point(f[1]), to_check_.point(f[2])};
   }
 
   void report_missing() {
-    const Point& where = subject_.plc_corner(triangle(0), 0);
+    const Point& where = to_check_.plc_corner(triangle(0), 0);
     findings_.add(
         guarantee::patch_border, where, {id_},
         "Patch {} (tag {}) at {} has no faces; it was lost, or its faces are tagged with another patch.", id_,
@@ -59,20 +60,20 @@ class PatchCheck {
 
   void check_plane() {
     for (const Index point : points()) {
-      const double off = std::fabs(dot(subject_.point(point) - patch_.origin, patch_.normal));
+      const double off = std::fabs(dot(to_check_.point(point) - patch_.origin, patch_.normal));
       if (off > allowed_)
-        findings_.add(guarantee::patch_plane, subject_.point(point), {id_, point},
+        findings_.add(guarantee::patch_plane, to_check_.point(point), {id_, point},
                       "Point {} at {} is {:.6g} off the plane of patch {} (tag {}), allowed is {:.6g}; a "
                       "vertex was moved "
                       "or belongs to another patch.",
-                      point, At{subject_.point(point)}, off, id_, patch_.tag, allowed_);
+                      point, At{to_check_.point(point)}, off, id_, patch_.tag, allowed_);
     }
   }
 
   std::vector<Index> points() const {
     std::vector<Index> points;
     for (const Index f : faces_)
-      points.insert(points.end(), subject_.mesh.faces[f].begin(), subject_.mesh.faces[f].end());
+      points.insert(points.end(), to_check_.mesh.faces[f].begin(), to_check_.mesh.faces[f].end());
     sort_uniquely(points);
     return points;
   }
@@ -87,7 +88,7 @@ class PatchCheck {
     std::vector<double> areas;
     for (const Index f : faces_) {
       const auto [a, b, c] = corners(f);
-      areas.push_back(area_in_plane(a, b, c) * (reversed(subject_, f) ? -1 : 1));
+      areas.push_back(area_in_plane(a, b, c) * (reversed(to_check_, f) ? -1 : 1));
     }
     const bool turned = patch_.regions[0] == patch_.regions[1] &&
                         std::count_if(areas.begin(), areas.end(), [](double a) { return a < 0; }) * 2 >
@@ -105,7 +106,7 @@ class PatchCheck {
     const auto [a, b, c] = corners(face);
     const double longest = std::max({distance(a, b), distance(b, c), distance(c, a)});
     if (signed_area >= -longest * allowed_) return true;
-    const Point where = subject_.centroid(subject_.mesh.faces[face]);
+    const Point where = to_check_.centroid(to_check_.mesh.faces[face]);
     findings_.add(guarantee::patch_orientation, where, {id_, face},
                   "Face {} at {} is turned against the plane of its patch {} (tag {}): the surface folds "
                   "back on itself "
@@ -117,10 +118,10 @@ class PatchCheck {
   // Compares areas projected along the plane's normal, with signs. (A turned face has a finding of its own,
   // so its area counts as positive here.)
   void compare_area(double found) {
-    const auto [expected, allowed] = planar_area(subject_, id_);
+    const auto [expected, allowed] = planar_area(to_check_, id_);
     const double difference = found - expected;
     if (std::fabs(difference) <= allowed) return;
-    const Point& where = subject_.plc_corner(triangle(0), 0);
+    const Point& where = to_check_.plc_corner(triangle(0), 0);
     findings_.add(
         guarantee::patch_area, where, {id_},
         "The faces of patch {} (tag {}) at {} have an area of {:.15g}, the patch has {:.15g}; the difference "
@@ -129,7 +130,7 @@ class PatchCheck {
   }
 
   void check_distances(std::span<const Index> patch_points) {
-    PatchDistance(subject_.mesh, subject_.plc, subject_.tolerance, id_, faces_, patch_points)
+    PatchDistance(to_check_.mesh, to_check_.plc, to_check_.tolerance, id_, faces_, patch_points)
         .visit([&] { return enough(); },
                [&](const PatchDistance::Sample& sample, bool on_face) { measure(sample, on_face); });
   }
@@ -140,7 +141,7 @@ class PatchCheck {
 
   void measure(const PatchDistance::Sample& sample, bool on_face) {
     report_.max_surface_distance = std::fmax(report_.max_surface_distance, sample.distance);
-    const double allowed = sample.tolerance + subject_.rounding;
+    const double allowed = sample.tolerance + to_check_.rounding;
     if (sample.distance <= allowed) return;
     const std::string what =
         on_face ? fmt::format("Face {} of patch {} (tag {}) is {:.6g} away from the patch at {}", sample.face,
@@ -154,7 +155,7 @@ class PatchCheck {
                   allowed);
   }
 
-  const Subject& subject_;
+  const MeshToCheck& to_check_;
   Index id_;
   const Plc::Patch& patch_;
   std::vector<Index> faces_;
@@ -163,23 +164,23 @@ class PatchCheck {
   Findings& findings_;
 };
 
-void check_labels(const Subject& subject, Index face, Findings& findings) {
-  const TetMesh& mesh = subject.mesh;
-  const Index id = subject.match.face_patch[face];
-  const Point where = subject.centroid(mesh.faces[face]);
+void check_labels(const MeshToCheck& to_check, Index face, Findings& findings) {
+  const TetMesh& mesh = to_check.mesh;
+  const Index id = to_check.match.face_patch[face];
+  const Point where = to_check.centroid(mesh.faces[face]);
   if (id == none) {
     findings.add(guarantee::patch_tag, where, {face},
                  "Face {} at {} has tag {}, which no patch of the complex has; correct the tag.", face,
                  At{where}, mesh.face_tag[face]);
     return;
   }
-  const Plc::Patch& patch = subject.plc.patches[id];
+  const Plc::Patch& patch = to_check.plc.patches[id];
   if (mesh.face_tag[face] != patch.tag)
     findings.add(guarantee::patch_tag, where, {face},
                  "Face {} at {} has tag {}, its patch {} has {}; correct the tag or the patch.", face,
                  At{where}, mesh.face_tag[face], id, patch.tag);
   const auto& regions = mesh.face_regions[face];
-  if (regions != patch.regions && !reversed(subject, face))
+  if (regions != patch.regions && !reversed(to_check, face))
     findings.add(guarantee::patch_regions, where, {face},
                  "Face {} at {} separates the regions {} and {}, its patch {} (tag {}) separates {} and {}; "
                  "a region is "
@@ -189,14 +190,14 @@ void check_labels(const Subject& subject, Index face, Findings& findings) {
 
 }  // namespace
 
-void check_patches(const Subject& subject, CheckReport& report, Findings& findings) {
-  assert(subject.is_matched());
-  for (Index f = 0; f < subject.mesh.faces.size(); ++f) check_labels(subject, f, findings);
-  const CurveUses uses(subject);
-  const PatchPoints patch_points(subject.plc);
-  const Grouping by_patch(subject.match.face_patch, subject.plc.patches.size());
-  for (Index p = 0; p < subject.plc.patches.size(); ++p)
-    PatchCheck(subject, p, by_patch.begin(p), by_patch.end(p), report, findings).run(uses, patch_points[p]);
+void check_patches(const MeshToCheck& to_check, CheckReport& report, Findings& findings) {
+  assert(to_check.is_matched());
+  for (Index f = 0; f < to_check.mesh.faces.size(); ++f) check_labels(to_check, f, findings);
+  const CurveUses uses(to_check);
+  const PatchPoints patch_points(to_check.plc);
+  const Grouping by_patch(to_check.match.face_patch, to_check.plc.patches.size());
+  for (Index p = 0; p < to_check.plc.patches.size(); ++p)
+    PatchCheck(to_check, p, by_patch.begin(p), by_patch.end(p), report, findings).run(uses, patch_points[p]);
 }
 
 }  // namespace collarmesh::checks

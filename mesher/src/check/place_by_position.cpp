@@ -7,7 +7,7 @@
 #include <span>
 
 #include "check/border_edges.h"
-#include "check/subject.h"
+#include "check/mesh_to_check.h"
 #include "common/disjoint_sets.h"
 #include "common/distance_tree.h"
 #include "common/segments.h"
@@ -59,27 +59,27 @@ struct ListedSide {
 // The patches with a region on both sides.
 class InnerPatches {
  public:
-  explicit InnerPatches(const Subject& subject)
-      : subject_(subject),
-        triangles_(triangles_of(subject.plc, numbers_)),
-        near_(subject.mesh.points.size(), -1) {}
+  explicit InnerPatches(const MeshToCheck& to_check)
+      : to_check_(to_check),
+        triangles_(triangles_of(to_check.plc, numbers_)),
+        near_(to_check.mesh.points.size(), -1) {}
 
   enum class Kind { planar, any };
   /// Returns whether the triangle lies on patches of this kind.
   bool hold(const Triangle& corners, Kind kind) {
     if (numbers_.empty()) return false;
     if (!std::all_of(corners.begin(), corners.end(), [&](Index p) { return is_near(p); })) return false;
-    const auto [distance, number] = triangles_.nearest(subject_.centroid(corners));
-    const Index patch = subject_.plc.triangles[numbers_[number]].patch;
-    return distance <= subject_.patch_allowance[patch] &&
-           (kind == Kind::any || subject_.plc.patches[patch].planar);
+    const auto [distance, number] = triangles_.nearest(to_check_.centroid(corners));
+    const Index patch = to_check_.plc.triangles[numbers_[number]].patch;
+    return distance <= to_check_.patch_allowance[patch] &&
+           (kind == Kind::any || to_check_.plc.patches[patch].planar);
   }
   /// Returns the patch's normal at the triangle, of any length.
   Vector normal(const Triangle& corners) const {
     const Plc::Triangle& t =
-        subject_.plc.triangles[numbers_[triangles_.nearest(subject_.centroid(corners)).triangle]];
-    const Point& a = subject_.plc_corner(t, 0);
-    return cross(subject_.plc_corner(t, 1) - a, subject_.plc_corner(t, 2) - a);
+        to_check_.plc.triangles[numbers_[triangles_.nearest(to_check_.centroid(corners)).triangle]];
+    const Point& a = to_check_.plc_corner(t, 0);
+    return cross(to_check_.plc_corner(t, 1) - a, to_check_.plc_corner(t, 2) - a);
   }
 
  private:
@@ -97,14 +97,14 @@ class InnerPatches {
 
   bool is_near(Index point) {
     if (near_[point] < 0) {
-      const auto [distance, number] = triangles_.nearest(subject_.point(point), subject_.rounding);
+      const auto [distance, number] = triangles_.nearest(to_check_.point(point), to_check_.rounding);
       near_[point] =
-          distance <= subject_.patch_allowance[subject_.plc.triangles[numbers_[number]].patch] ? 1 : 0;
+          distance <= to_check_.patch_allowance[to_check_.plc.triangles[numbers_[number]].patch] ? 1 : 0;
     }
     return near_[point] != 0;
   }
 
-  const Subject& subject_;
+  const MeshToCheck& to_check_;
   std::vector<Index> numbers_;  // numbers of the complex's triangles
   DistanceTree triangles_;
   std::vector<std::int8_t> near_;  // by mesh point: 1 if it is on one of these patches, 0 if not, -1 if not
@@ -134,29 +134,30 @@ struct CurveSegments {
 // and curves of their tags. Such numbers change with the order of the facets.
 class Numbers {
  public:
-  explicit Numbers(const Subject& subject) : subject_(subject) {}
+  explicit Numbers(const MeshToCheck& to_check) : to_check_(to_check) {}
 
   bool fit_faces() const {
-    const Plc& plc = subject_.plc;
+    const Plc& plc = to_check_.plc;
     if (!plc.numbered_patches) return true;
     std::vector<DistanceTree::Triangle> triangles;
     for (const Plc::Triangle& t : plc.triangles)
-      triangles.push_back({subject_.plc_corner(t, 0), subject_.plc_corner(t, 1), subject_.plc_corner(t, 2)});
+      triangles.push_back(
+          {to_check_.plc_corner(t, 0), to_check_.plc_corner(t, 1), to_check_.plc_corner(t, 2)});
     const DistanceTree tree(std::move(triangles));
-    return most(subject_.mesh.faces.size(), [&](std::size_t f) {
-      const Index nearest = tree.nearest(subject_.centroid(subject_.mesh.faces[f])).triangle;
-      return nearest != none && plc.patches[plc.triangles[nearest].patch].tag == subject_.mesh.face_tag[f];
+    return most(to_check_.mesh.faces.size(), [&](std::size_t f) {
+      const Index nearest = tree.nearest(to_check_.centroid(to_check_.mesh.faces[f])).triangle;
+      return nearest != none && plc.patches[plc.triangles[nearest].patch].tag == to_check_.mesh.face_tag[f];
     });
   }
 
   bool fit_edges() const {
-    const Plc& plc = subject_.plc;
+    const Plc& plc = to_check_.plc;
     if (!plc.numbered_curves || plc.curves.empty()) return true;
     const CurveSegments curves(plc);
     const DistanceTree tree(curves.segments);
-    return most(subject_.mesh.edges.size(), [&](std::size_t e) {
-      const Index nearest = tree.nearest(subject_.midpoint(subject_.mesh.edges[e])).triangle;
-      return nearest != none && plc.curves[curves.curve[nearest]].tag == subject_.mesh.edge_tag[e];
+    return most(to_check_.mesh.edges.size(), [&](std::size_t e) {
+      const Index nearest = tree.nearest(to_check_.midpoint(to_check_.mesh.edges[e])).triangle;
+      return nearest != none && plc.curves[curves.curve[nearest]].tag == to_check_.mesh.edge_tag[e];
     });
   }
 
@@ -170,21 +171,21 @@ class Numbers {
     return 2 * fitting >= asked;
   }
 
-  const Subject& subject_;
+  const MeshToCheck& to_check_;
 };
 
 class Placement {
  public:
-  Placement(const Subject& subject, CheckReport& report, Findings& findings)
-      : subject_(subject), plc_(subject.plc), report_(report), findings_(findings), inner_(subject) {
-    const TetMesh& mesh = subject.mesh;
+  Placement(const MeshToCheck& to_check, CheckReport& report, Findings& findings)
+      : to_check_(to_check), plc_(to_check.plc), report_(report), findings_(findings), inner_(to_check) {
+    const TetMesh& mesh = to_check.mesh;
     std::size_t in_regions = 0;
     for (Index t = 0; t < mesh.tets.size(); ++t) in_regions += has_region(t) ? 1 : 0;
     lost_tets_ = in_regions < mesh.tets.size();
     const std::span regions(plc_.regions);
     tets_known_ = 2 * in_regions >= mesh.tets.size() ||
                   are_known(mesh.tet_tag, regions.subspan(std::min<std::size_t>(1, regions.size())));
-    const Numbers numbers(subject);
+    const Numbers numbers(to_check);
     new_faces_ = mesh.faces.empty() || !are_known(mesh.face_tag, plc_.patches) || !numbers.fit_faces();
     new_edges_ = !plc_.curves.empty() &&
                  (mesh.edges.empty() || !are_known(mesh.edge_tag, plc_.curves) || !numbers.fit_edges());
@@ -193,7 +194,7 @@ class Placement {
   std::optional<TetMesh> run() {
     const std::vector<bool> stray = new_edges_ ? std::vector<bool>{} : stray_edges();
     if (!lost_tets_ && !new_faces_ && !new_edges_ && stray.empty()) return std::nullopt;
-    mesh_ = subject_.mesh;
+    mesh_ = to_check_.mesh;
     if (!stray.empty()) drop_edges(stray);
     if (lost_tets_ || new_faces_) {
       collect_sides();
@@ -213,7 +214,7 @@ class Placement {
   // Returns the listed edges that lie on no curve and have no tag that requires one: other programs list the
   // edges along which they divide faces, and the seams of round faces. Empty if there are none.
   std::vector<bool> stray_edges() const {
-    const TetMesh& mesh = subject_.mesh;
+    const TetMesh& mesh = to_check_.mesh;
     if (mesh.edges.empty()) return {};
     const bool told = !plc_.numbered_curves && tell_apart(plc_.curves);
     const std::vector<Tag> known = told ? sorted_tags(plc_.curves) : std::vector<Tag>{};
@@ -224,8 +225,8 @@ class Placement {
     for (Index e = 0; e < mesh.edges.size(); ++e) {
       if (std::binary_search(known.begin(), known.end(), mesh.edge_tag[e])) continue;
       const auto& [a, b] = mesh.edges[e];
-      const auto [distance, number] = tree.nearest(subject_.midpoint({a, b}));
-      if (number != none && distance <= subject_.curve_allowance[curves.curve[number]]) continue;
+      const auto [distance, number] = tree.nearest(to_check_.midpoint({a, b}));
+      if (number != none && distance <= to_check_.curve_allowance[curves.curve[number]]) continue;
       off.push_back(sorted(a, b));
       is_end[a] = is_end[b] = true;
     }
@@ -267,14 +268,14 @@ class Placement {
   // Returns whether the tet has a region of the complex. Its tag may be the region's number, because some
   // formats have room for one number only.
   bool has_region(Index tet) const {
-    const Index region = subject_.mesh.tet_region[tet];
-    const Tag tag = subject_.mesh.tet_tag[tet];
+    const Index region = to_check_.mesh.tet_region[tet];
+    const Tag tag = to_check_.mesh.tet_tag[tet];
     return region >= 1 && region < plc_.regions.size() &&
            (tag == plc_.regions[region].tag || tag == static_cast<Tag>(region));
   }
 
   void collect_sides() {
-    const TetMesh& mesh = subject_.mesh;
+    const TetMesh& mesh = to_check_.mesh;
     sides_.reserve(4 * mesh.tets.size() + mesh.faces.size());
     for (Index t = 0; t < mesh.tets.size(); ++t)
       for (Index i = 0; i < 4; ++i) sides_.push_back({outward_face(t, i), t, i});
@@ -295,12 +296,12 @@ class Placement {
   }
 
   Triangle outward_face(Index tet, Index opposite) const {
-    return side_corners(subject_.mesh.tets[tet], opposite);
+    return side_corners(to_check_.mesh.tets[tet], opposite);
   }
 
   // Finds the region of each connected part by the place of its largest tet.
   void place_tets() {
-    const TetMesh& mesh = subject_.mesh;
+    const TetMesh& mesh = to_check_.mesh;
     DisjointSets parts(mesh.tets.size());
     for_each_triangle([&](const ListedSide* side, std::size_t count, Index face) {
       if (count != 2 || face != none) return;
@@ -327,15 +328,15 @@ class Placement {
   }
 
   double volume(Index t) const {
-    const auto& [a, b, c, d] = subject_.mesh.tets[t];
-    return six_volume(subject_.point(a), subject_.point(b), subject_.point(c), subject_.point(d));
+    const auto& [a, b, c, d] = to_check_.mesh.tets[t];
+    return six_volume(to_check_.point(a), to_check_.point(b), to_check_.point(c), to_check_.point(d));
   }
 
   Index region_of(Index t) {
-    const auto& [a, b, c, d] = subject_.mesh.tets[t];
+    const auto& [a, b, c, d] = to_check_.mesh.tets[t];
     const Point centre =
-        0.25 * ((subject_.point(a) + subject_.point(b)) + (subject_.point(c) + subject_.point(d)));
-    const Index region = subject_.regions->region_at(centre);
+        0.25 * ((to_check_.point(a) + to_check_.point(b)) + (to_check_.point(c) + to_check_.point(d)));
+    const Index region = to_check_.regions->region_at(centre);
     if (region == 0)
       findings_.add(guarantee::region_volume, centre, {t},
                     "Tet {} at {} and those it is connected with lie outside all regions of the input; check "
@@ -379,8 +380,8 @@ class Placement {
       if (region == other) {
         const auto kind = face == none ? InnerPatches::Kind::planar : InnerPatches::Kind::any;
         if (!inner_.hold(corners, kind)) return;
-        const Point& a = subject_.point(corners[0]);
-        const Vector normal = cross(subject_.point(corners[1]) - a, subject_.point(corners[2]) - a);
+        const Point& a = to_check_.point(corners[0]);
+        const Vector normal = cross(to_check_.point(corners[1]) - a, to_check_.point(corners[2]) - a);
         if (dot(normal, inner_.normal(corners)) < 0) std::swap(corners[1], corners[2]);
       }
       mesh_.faces.push_back(corners);
@@ -416,7 +417,7 @@ class Placement {
     auto chains = points_on_curves();
     const auto edges = edges_between(chains);
     const auto borders =
-        new_faces_ ? std::vector<std::vector<std::array<Index, 2>>>(chains.size()) : border_edges(subject_);
+        new_faces_ ? std::vector<std::vector<std::array<Index, 2>>>(chains.size()) : border_edges(to_check_);
     const auto add = [&](Index curve, const std::array<Index, 2>& edge) {
       mesh_.edges.push_back(edge);
       mesh_.edge_curve.push_back(curve);
@@ -439,18 +440,18 @@ class Placement {
     const CurveSegments curves(plc_);
     const DistanceTree tree(curves.segments);
     std::vector<std::vector<PlaceOnCurve>> chains(plc_.curves.size());
-    const auto vertex_point = match_vertices(mesh_, plc_, subject_.rounding);
+    const auto vertex_point = match_vertices(mesh_, plc_, to_check_.rounding);
     std::vector<bool> is_vertex(mesh_.points.size(), false);
     for (const Index p : vertex_point)
       if (p != none) is_vertex[p] = true;
     for (const Index p : candidates()) {
       if (is_vertex[p]) continue;
-      const auto [distance_to, number] = tree.nearest(subject_.point(p));
+      const auto [distance_to, number] = tree.nearest(to_check_.point(p));
       const Index c = curves.curve[number];
-      const double allowed = plc_.curves[c].straight ? subject_.curve_allowance[c] : subject_.rounding;
+      const double allowed = plc_.curves[c].straight ? to_check_.curve_allowance[c] : to_check_.rounding;
       if (distance_to <= allowed)
         chains[c].push_back(
-            {curves.arc[number] + distance(curves.segments[number][0], subject_.point(p)), p});
+            {curves.arc[number] + distance(curves.segments[number][0], to_check_.point(p)), p});
     }
     for (Index c = 0; c < chains.size(); ++c) {
       const auto& ends = plc_.curves[c].ends;
@@ -491,7 +492,7 @@ class Placement {
     return edges;
   }
 
-  const Subject& subject_;
+  const MeshToCheck& to_check_;
   const Plc& plc_;
   CheckReport& report_;
   Findings& findings_;
@@ -503,18 +504,19 @@ class Placement {
 
 }  // namespace
 
-std::optional<TetMesh> place_by_position(const Subject& subject, CheckReport& report, Findings& findings) {
-  if (subject.mesh.features.empty()) return Placement(subject, report, findings).run();
-  const Numbers numbers(subject);
+std::optional<TetMesh> place_by_position(const MeshToCheck& to_check, CheckReport& report,
+                                         Findings& findings) {
+  if (to_check.mesh.features.empty()) return Placement(to_check, report, findings).run();
+  const Numbers numbers(to_check);
   if (numbers.fit_faces() && numbers.fit_edges()) return std::nullopt;
-  TetMesh unplaced = subject.mesh;  // the labels of a complex with another numbering are dropped
+  TetMesh unplaced = to_check.mesh;  // the labels of a complex with another numbering are dropped
   unplaced.features.clear();
   std::fill(unplaced.face_patch.begin(), unplaced.face_patch.end(), none);
   std::fill(unplaced.edge_curve.begin(), unplaced.edge_curve.end(), none);
   std::optional<TetMesh> placed =
-      Placement({unplaced, subject.plc, subject.options, subject.tolerance, subject.rounding,
-                 subject.curve_allowance, subject.patch_allowance, subject.regions, subject.match,
-                 subject.collar, subject.coarsened},
+      Placement({unplaced, to_check.plc, to_check.options, to_check.tolerance, to_check.rounding,
+                 to_check.curve_allowance, to_check.patch_allowance, to_check.regions, to_check.match,
+                 to_check.collar, to_check.coarsened},
                 report, findings)
           .run();
   return placed ? std::move(placed) : std::optional(std::move(unplaced));

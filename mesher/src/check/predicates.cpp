@@ -1,6 +1,6 @@
 #include "check/predicates.h"
 
-#include "check/orientation.h"
+#include "mesh/orientation.h"
 
 namespace collarmesh::checks {
 

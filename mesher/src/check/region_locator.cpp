@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "check/orientation.h"
+#include "mesh/orientation.h"
 
 namespace collarmesh::checks {
 

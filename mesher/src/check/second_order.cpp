@@ -1,8 +1,8 @@
 // Checks of cells of second order: mid-edge nodes and the Jacobian.
 #include <algorithm>
 
+#include "check/mesh_to_check.h"
 #include "check/predicates.h"
-#include "check/subject.h"
 #include "collarmesh/curved_tet.h"
 #include "common/cell_shapes.h"
 #include "common/distance_tree.h"
@@ -45,8 +45,8 @@ std::vector<MidNode> mid_nodes(const TetMesh& mesh) {
 
 const char* name_of_cell(int dimension) { return dimension == 3 ? "tet" : dimension == 2 ? "face" : "edge"; }
 
-void check_not_corners(const Subject& subject, Findings& findings) {
-  const TetMesh& mesh = subject.mesh;
+void check_not_corners(const MeshToCheck& to_check, Findings& findings) {
+  const TetMesh& mesh = to_check.mesh;
   std::vector<bool> is_corner(mesh.points.size(), false);
   for (const auto& tet : mesh.tets)
     for (const Index corner : tet) is_corner[corner] = true;
@@ -54,21 +54,21 @@ void check_not_corners(const Subject& subject, Findings& findings) {
     for (const Index node : mesh.tet_mid_nodes[t])
       if (is_corner[node])
         findings.add(
-            guarantee::mid_nodes, subject.point(node), {t, node},
+            guarantee::mid_nodes, to_check.point(node), {t, node},
             "Point {} at {} is a mid-edge node of tet {} and a corner of a tet; give the edge a node "
             "of its own.",
-            node, At{subject.point(node)}, t);
+            node, At{to_check.point(node)}, t);
 }
 
 // Checks that each edge has one mid-edge node, and each of these nodes one edge.
-void check_shared(const Subject& subject, Findings& findings) {
-  std::vector<MidNode> nodes = mid_nodes(subject.mesh);
+void check_shared(const MeshToCheck& to_check, Findings& findings) {
+  std::vector<MidNode> nodes = mid_nodes(to_check.mesh);
   const auto report = [&](const MidNode& first, const MidNode& second, const char* what) {
-    findings.add(guarantee::mid_nodes, subject.midpoint(second.edge), {first.node, second.node},
+    findings.add(guarantee::mid_nodes, to_check.midpoint(second.edge), {first.node, second.node},
                  "{} {} has the mid-edge node {} between points {} and {} at {}, {} {} has the mid-edge node "
                  "{} between {} and {}: {}.",
                  name_of_cell(first.dimension), first.cell, first.node, first.edge[0], first.edge[1],
-                 At{subject.midpoint(first.edge)}, name_of_cell(second.dimension), second.cell, second.node,
+                 At{to_check.midpoint(first.edge)}, name_of_cell(second.dimension), second.cell, second.node,
                  second.edge[0], second.edge[1], what);
   };
   // Sorts tets first, so that findings name the cells that differ from them.
@@ -95,22 +95,22 @@ void check_shared(const Subject& subject, Findings& findings) {
   }
 }
 
-void check_jacobians(const Subject& subject, Findings& findings) {
-  const TetMesh& mesh = subject.mesh;
-  for (Index t = 0; t < std::min<std::size_t>(mesh.tets.size(), subject.first_part); ++t)
+void check_jacobians(const MeshToCheck& to_check, Findings& findings) {
+  const TetMesh& mesh = to_check.mesh;
+  for (Index t = 0; t < std::min<std::size_t>(mesh.tets.size(), to_check.first_part); ++t)
     check_jacobian({"Tet", t}, curved_tet(mesh, t), mesh.tet_tag[t], findings);
 }
 
-void check_node(const Subject& subject, Index node, double distance, double allowed,
+void check_node(const MeshToCheck& to_check, Index node, double distance, double allowed,
                 const NamedFeature& feature, CheckReport& report, bool smooth, Findings& findings) {
   if (smooth) report.max_surface_distance = std::max(report.max_surface_distance, distance);
-  check_off_feature(guarantee::mid_node_distance, {"The mid-edge node", node}, subject.point(node), distance,
+  check_off_feature(guarantee::mid_node_distance, {"The mid-edge node", node}, to_check.point(node), distance,
                     allowed, feature, findings);
 }
 
-void check_on_curves(const Subject& subject, CheckReport& report, Findings& findings) {
-  const Plc& plc = subject.plc;
-  const Grouping by_curve(subject.match.edge_curve, plc.curves.size());
+void check_on_curves(const MeshToCheck& to_check, CheckReport& report, Findings& findings) {
+  const Plc& plc = to_check.plc;
+  const Grouping by_curve(to_check.match.edge_curve, plc.curves.size());
   for (Index c = 0; c < plc.curves.size(); ++c) {
     if (by_curve.size(c) == 0) continue;
     const Plc::Curve& curve = plc.curves[c];
@@ -120,31 +120,31 @@ void check_on_curves(const Subject& subject, CheckReport& report, Findings& find
     });
     const DistanceTree tree(std::move(segments));
     for (const Index* e = by_curve.begin(c); e != by_curve.end(c); ++e) {
-      const Index node = subject.mesh.edge_mid_nodes[*e];
-      check_node(subject, node, tree.nearest(subject.point(node)).distance, subject.curve_allowance[c],
+      const Index node = to_check.mesh.edge_mid_nodes[*e];
+      check_node(to_check, node, tree.nearest(to_check.point(node)).distance, to_check.curve_allowance[c],
                  {"curve", c, curve.tag}, report, !curve.straight, findings);
     }
   }
 }
 
-void check_on_patches(const Subject& subject, CheckReport& report, Findings& findings) {
-  const Plc& plc = subject.plc;
-  const Grouping by_patch(subject.match.face_patch, plc.patches.size());
+void check_on_patches(const MeshToCheck& to_check, CheckReport& report, Findings& findings) {
+  const Plc& plc = to_check.plc;
+  const Grouping by_patch(to_check.match.face_patch, plc.patches.size());
   for (Index p = 0; p < plc.patches.size(); ++p) {
     if (by_patch.size(p) == 0) continue;
     const Plc::Patch& patch = plc.patches[p];
     std::vector<DistanceTree::Triangle> triangles;
     for (Index t = patch.first_triangle; !patch.planar && t < patch.first_triangle + patch.triangle_count;
          ++t)
-      triangles.push_back({subject.plc_corner(plc.triangles[t], 0), subject.plc_corner(plc.triangles[t], 1),
-                           subject.plc_corner(plc.triangles[t], 2)});
+      triangles.push_back({to_check.plc_corner(plc.triangles[t], 0), to_check.plc_corner(plc.triangles[t], 1),
+                           to_check.plc_corner(plc.triangles[t], 2)});
     const DistanceTree tree(std::move(triangles));
     for (const Index* f = by_patch.begin(p); f != by_patch.end(p); ++f)
-      for (const Index node : subject.mesh.face_mid_nodes[*f]) {
-        const Point& at = subject.point(node);
+      for (const Index node : to_check.mesh.face_mid_nodes[*f]) {
+        const Point& at = to_check.point(node);
         const double distance =
             patch.planar ? std::fabs(dot(at - patch.origin, patch.normal)) : tree.nearest(at).distance;
-        check_node(subject, node, distance, subject.patch_allowance[p], {"patch", p, patch.tag}, report,
+        check_node(to_check, node, distance, to_check.patch_allowance[p], {"patch", p, patch.tag}, report,
                    !patch.planar, findings);
       }
   }
@@ -167,13 +167,13 @@ void take_mid_nodes_of_tets(TetMesh& mesh) {
   for (const auto& [a, b] : mesh.edges) mesh.edge_mid_nodes.push_back(amid(a, b));
 }
 
-void check_second_order(const Subject& subject, CheckReport& report, Findings& findings) {
-  if (subject.mesh.order() == 1) return;
-  check_not_corners(subject, findings);
-  check_shared(subject, findings);
-  check_jacobians(subject, findings);
-  check_on_curves(subject, report, findings);
-  check_on_patches(subject, report, findings);
+void check_second_order(const MeshToCheck& to_check, CheckReport& report, Findings& findings) {
+  if (to_check.mesh.order() == 1) return;
+  check_not_corners(to_check, findings);
+  check_shared(to_check, findings);
+  check_jacobians(to_check, findings);
+  check_on_curves(to_check, report, findings);
+  check_on_patches(to_check, report, findings);
 }
 
 }  // namespace collarmesh::checks

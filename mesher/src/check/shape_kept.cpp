@@ -5,7 +5,7 @@
 
 #include "check/feature_sizes.h"
 #include "check/guarantees.h"
-#include "check/subject.h"
+#include "check/mesh_to_check.h"
 
 namespace collarmesh::checks {
 
@@ -23,12 +23,12 @@ Point point_of(const Plc& plc, const Shell& shell) {
   return plc.points[plc.triangles[plc.patches[shell.patches[0]].first_triangle].points[0]];
 }
 
-std::vector<double> enclosed_by(const std::vector<Shell>& shells, const Subject& subject) {
-  const TetMesh& mesh = subject.mesh;
-  const Grouping faces(subject.match.face_patch, subject.plc.patches.size());
+std::vector<double> enclosed_by(const std::vector<Shell>& shells, const MeshToCheck& to_check) {
+  const TetMesh& mesh = to_check.mesh;
+  const Grouping faces(to_check.match.face_patch, to_check.plc.patches.size());
   std::vector<double> volumes;
   for (const Shell& shell : shells) {
-    const Point apex = point_of(subject.plc, shell);
+    const Point apex = point_of(to_check.plc, shell);
     double volume = 0;
     for (const Index patch : shell.patches)
       for (const Index* face = faces.begin(patch); face != faces.end(patch); ++face)
@@ -40,14 +40,14 @@ std::vector<double> enclosed_by(const std::vector<Shell>& shells, const Subject&
 }
 
 /// Compares a volume with the input's; adds a finding or a warning.
-void judge_volume(const Subject& subject, const std::string& what, double made, double input,
+void judge_volume(const MeshToCheck& to_check, const std::string& what, double made, double input,
                   const Point& where, Index id, CheckReport& report, Findings& findings) {
-  const double largest = volume_allowance(subject.mesh.order()), off = std::fabs(made - input);
+  const double largest = volume_allowance(to_check.mesh.order()), off = std::fabs(made - input);
   if (!(off > std::min(volume_warned_of, largest) * input)) return;
   const std::string found =
       fmt::format("{} has a volume of {:.6g} in the mesh and of {:.6g} in the input, {:+.2f} %", what, made,
                   input, percent_off(made, input));
-  if (off > largest * input && subject.options.bounds.distance <= 0)
+  if (off > largest * input && to_check.options.bounds.distance <= 0)
     findings.add(guarantee::volume_kept, where, {id},
                  "{}; allowed are {:.0f} %. Ask for a smaller size or distance.", found, 100 * largest);
   else
@@ -69,19 +69,20 @@ std::string name_of(const Plc& plc, const Shell& shell) {
 
 }  // namespace
 
-void check_shape_kept(const Subject& subject, CheckReport& report, Findings& findings) {
-  assert(subject.is_matched());
-  const Plc& plc = subject.plc;
-  report.of_input = input_sizes(subject);
+void check_shape_kept(const MeshToCheck& to_check, CheckReport& report, Findings& findings) {
+  assert(to_check.is_matched());
+  const Plc& plc = to_check.plc;
+  report.of_input = input_sizes(to_check);
   const std::vector<Shell> shells = shells_of(plc);
-  report.of_mesh = feature_sizes(subject);
+  report.of_mesh = feature_sizes(to_check);
   report.of_mesh.volumes = report.region_volumes;
-  report.of_mesh.shells = enclosed_by(shells, subject);
+  report.of_mesh.shells = enclosed_by(shells, to_check);
   for (Index r = 1; r < plc.regions.size(); ++r)
-    judge_volume(subject, fmt::format("Region {} (tag {})", r, plc.regions[r].tag), report.of_mesh.volumes[r],
-                 report.of_input.volumes[r], plc.bounds.centre(), r, report, findings);
+    judge_volume(to_check, fmt::format("Region {} (tag {})", r, plc.regions[r].tag),
+                 report.of_mesh.volumes[r], report.of_input.volumes[r], plc.bounds.centre(), r, report,
+                 findings);
   for (std::size_t i = 0; i < shells.size(); ++i)
-    judge_volume(subject, name_of(plc, shells[i]), report.of_mesh.shells[i], report.of_input.shells[i],
+    judge_volume(to_check, name_of(plc, shells[i]), report.of_mesh.shells[i], report.of_input.shells[i],
                  point_of(plc, shells[i]), shells[i].region, report, findings);
 }
 

@@ -17,8 +17,8 @@ namespace collarmesh::checks {
 namespace {
 
 /// Checks that faces of solids point outwards.
-void check_outward(const Subject& subject, const Plc& plc, Findings& findings) {
-  const Grouping by_patch(subject.match.face_patch, plc.patches.size());
+void check_outward(const MeshToCheck& to_check, const Plc& plc, Findings& findings) {
+  const Grouping by_patch(to_check.match.face_patch, plc.patches.size());
   for (Index p = 0; p < plc.patches.size(); ++p) {
     const auto& [behind, front] = plc.patches[p].regions;
     if ((behind == 0) == (front == 0)) continue;
@@ -26,17 +26,17 @@ void check_outward(const Subject& subject, const Plc& plc, Findings& findings) {
     const Plc::Patch& patch = plc.patches[p];
     std::vector<DistanceTree::Triangle> triangles;
     for (Index t = patch.first_triangle; t < patch.first_triangle + patch.triangle_count; ++t)
-      triangles.push_back({subject.plc_corner(plc.triangles[t], 0), subject.plc_corner(plc.triangles[t], 1),
-                           subject.plc_corner(plc.triangles[t], 2)});
+      triangles.push_back({to_check.plc_corner(plc.triangles[t], 0), to_check.plc_corner(plc.triangles[t], 1),
+                           to_check.plc_corner(plc.triangles[t], 2)});
     const DistanceTree tree(triangles);
     Point where{};
     const auto normal = [](const Point& a, const Point& b, const Point& c) { return cross(b - a, c - a); };
     for (const Index* f = by_patch.begin(p); f != by_patch.end(p); ++f) {
-      where = subject.centroid(subject.mesh.faces[*f]);
+      where = to_check.centroid(to_check.mesh.faces[*f]);
       const auto& [a, b, c] = triangles[tree.nearest(where).triangle];
-      const auto& [i, j, k] = subject.mesh.faces[*f];
+      const auto& [i, j, k] = to_check.mesh.faces[*f];
       const double agreement =
-          dot(normal(a, b, c), normal(subject.point(i), subject.point(j), subject.point(k)));
+          dot(normal(a, b, c), normal(to_check.point(i), to_check.point(j), to_check.point(k)));
       wrong += agreement < 0 ? 1 : -1;
     }
     if ((wrong > 0) == (behind > 0) && wrong != 0)
@@ -62,7 +62,7 @@ struct PatchMeeting {
 
 /// Returns the meetings of patches that bound no region, one for each pair and value of `agree`. Edges of
 /// more than two triangles do not count.
-std::vector<PatchMeeting> meetings_of(const Subject& subject, const Plc& plc) {
+std::vector<PatchMeeting> meetings_of(const MeshToCheck& to_check, const Plc& plc) {
   struct Side {
     std::uint64_t edge;
     Index patch;
@@ -70,10 +70,10 @@ std::vector<PatchMeeting> meetings_of(const Subject& subject, const Plc& plc) {
     bool operator<(const Side& other) const { return edge < other.edge; }
   };
   std::vector<Side> sides;
-  for (Index f = 0; f < subject.mesh.faces.size(); ++f)
+  for (Index f = 0; f < to_check.mesh.faces.size(); ++f)
     for (unsigned i = 0; i < 3; ++i) {
-      const Index a = subject.mesh.faces[f][i], b = subject.mesh.faces[f][(i + 1) % 3];
-      sides.push_back({edge_key(a, b), subject.match.face_patch[f], {a, b}});
+      const Index a = to_check.mesh.faces[f][i], b = to_check.mesh.faces[f][(i + 1) % 3];
+      sides.push_back({edge_key(a, b), to_check.match.face_patch[f], {a, b}});
     }
   std::sort(sides.begin(), sides.end());
   const auto is_free = [&](Index patch) {
@@ -135,14 +135,14 @@ class MetSurfaces {
 };
 
 /// Checks that patches of an orientable surface agree where two of them meet.
-void check_agreement(const Subject& subject, const Plc& plc, Findings& findings) {
-  const std::vector<PatchMeeting> meetings = meetings_of(subject, plc);
+void check_agreement(const MeshToCheck& to_check, const Plc& plc, Findings& findings) {
+  const std::vector<PatchMeeting> meetings = meetings_of(to_check, plc);
   MetSurfaces surfaces(plc.patches.size());
   for (const PatchMeeting& meeting : meetings) surfaces.join(meeting);
   for (const PatchMeeting& meeting : meetings) {
     const Index first = meeting.patches[0], second = meeting.patches[1];
     if (meeting.agree || !surfaces.is_orientable(first)) continue;
-    const Point where = subject.midpoint(meeting.ends);
+    const Point where = to_check.midpoint(meeting.ends);
     findings.add(guarantee::shell_orientation, where, {first, second},
                  "The faces of patches {} (tag {}) and {} (tag {}) are turned against each other at {}; turn "
                  "those of one patch.",
@@ -152,10 +152,10 @@ void check_agreement(const Subject& subject, const Plc& plc, Findings& findings)
 
 }  // namespace
 
-void check_shell_orientation(const Subject& subject, const Plc& plc, Findings& findings) {
-  assert(subject.is_matched());
-  check_outward(subject, plc, findings);
-  check_agreement(subject, plc, findings);
+void check_shell_orientation(const MeshToCheck& to_check, const Plc& plc, Findings& findings) {
+  assert(to_check.is_matched());
+  check_outward(to_check, plc, findings);
+  check_agreement(to_check, plc, findings);
 }
 
 }  // namespace collarmesh::checks

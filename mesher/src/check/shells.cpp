@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "check/feature_sizes.h"
+#include "check/mesh_to_check.h"
 #include "check/shell_orientation.h"
-#include "check/subject.h"
 #include "common/edge_key.h"
 #include "common/thread_limit.h"
 
@@ -27,12 +27,12 @@ double angle_between(const Vector& u, const Vector& v) {
   return std::atan2(norm(cross(u, v)), dot(u, v)) * 180 / std::numbers::pi;
 }
 
-Angles angles_of(const Subject& subject, Index face) {
+Angles angles_of(const MeshToCheck& to_check, Index face) {
   Angles angles{};
-  const auto& f = subject.mesh.faces[face];
+  const auto& f = to_check.mesh.faces[face];
   for (unsigned i = 0; i < 3; ++i) {
-    const Point& p = subject.point(f[i]);
-    angles.at[i] = angle_between(subject.point(f[(i + 1) % 3]) - p, subject.point(f[(i + 2) % 3]) - p);
+    const Point& p = to_check.point(f[i]);
+    angles.at[i] = angle_between(to_check.point(f[(i + 1) % 3]) - p, to_check.point(f[(i + 2) % 3]) - p);
   }
   return angles;
 }
@@ -40,10 +40,10 @@ Angles angles_of(const Subject& subject, Index face) {
 /// The edges of curves and the vertices of the complex, as found in the mesh.
 class GivenCorners {
  public:
-  explicit GivenCorners(const Subject& subject) : is_vertex_(subject.mesh.points.size(), false) {
-    for (const Index p : subject.match.vertex_point)
+  explicit GivenCorners(const MeshToCheck& to_check) : is_vertex_(to_check.mesh.points.size(), false) {
+    for (const Index p : to_check.match.vertex_point)
       if (p != none) is_vertex_[p] = true;
-    for (const auto& [a, b] : subject.mesh.edges) edges_.push_back(edge_key(a, b));
+    for (const auto& [a, b] : to_check.mesh.edges) edges_.push_back(edge_key(a, b));
     std::sort(edges_.begin(), edges_.end());
   }
 
@@ -60,17 +60,17 @@ class GivenCorners {
   std::vector<std::uint64_t> edges_;
 };
 
-void check_angles(const Subject& subject, CheckReport& report, Findings& findings) {
-  const GivenCorners given(subject);
+void check_angles(const MeshToCheck& to_check, CheckReport& report, Findings& findings) {
+  const GivenCorners given(to_check);
   TriangleMeasures measures;
-  measures.triangles = subject.mesh.faces.size();
+  measures.triangles = to_check.mesh.faces.size();
   const auto bin = [](double angle) {
     constexpr double width = 180.0 / TriangleMeasures::bins;
     return std::min(TriangleMeasures::bins - 1, static_cast<std::size_t>(angle / width));
   };
-  for (Index f = 0; f < subject.mesh.faces.size(); ++f) {
-    const auto& face = subject.mesh.faces[f];
-    const Angles angles = angles_of(subject, f);
+  for (Index f = 0; f < to_check.mesh.faces.size(); ++f) {
+    const auto& face = to_check.mesh.faces[f];
+    const Angles angles = angles_of(to_check, f);
     measures.min_angle = std::min(measures.min_angle, angles.least());
     measures.max_angle = std::max(measures.max_angle, angles.largest());
     ++measures.min_angles[bin(angles.least())];
@@ -86,7 +86,7 @@ void check_angles(const Subject& subject, CheckReport& report, Findings& finding
       ++measures.at_sharp_corners;
       continue;
     }
-    const Point where = subject.centroid(face);
+    const Point where = to_check.centroid(face);
     findings.add(
         guarantee::triangle_angles, where, {f},
         "Triangle {} at {} has angles from {:.4g} to {:.4g} degrees, allowed are {:.4g} to {:.4g}; features "
@@ -97,17 +97,17 @@ void check_angles(const Subject& subject, CheckReport& report, Findings& finding
 }
 
 /// Checks that listed edges are sides of faces, each listed once.
-void check_edges(const Subject& subject, Findings& findings) {
+void check_edges(const MeshToCheck& to_check, Findings& findings) {
   std::vector<std::uint64_t> sides;
-  for (const auto& f : subject.mesh.faces)
+  for (const auto& f : to_check.mesh.faces)
     for (unsigned i = 0; i < 3; ++i) sides.push_back(edge_key(f[i], f[(i + 1) % 3]));
   std::sort(sides.begin(), sides.end());
   std::vector<std::uint64_t> listed;
-  for (const auto& [a, b] : subject.mesh.edges) listed.push_back(edge_key(a, b));
+  for (const auto& [a, b] : to_check.mesh.edges) listed.push_back(edge_key(a, b));
   std::sort(listed.begin(), listed.end());
-  for (Index e = 0; e < subject.mesh.edges.size(); ++e) {
-    const std::uint64_t number = edge_key(subject.mesh.edges[e][0], subject.mesh.edges[e][1]);
-    const Point where = subject.midpoint(subject.mesh.edges[e]);
+  for (Index e = 0; e < to_check.mesh.edges.size(); ++e) {
+    const std::uint64_t number = edge_key(to_check.mesh.edges[e][0], to_check.mesh.edges[e][1]);
+    const Point where = to_check.midpoint(to_check.mesh.edges[e]);
     if (!std::binary_search(sides.begin(), sides.end(), number))
       findings.add(guarantee::listed_edges, where, {e}, "Edge {} at {} is a side of no triangle.", e,
                    At{where});
@@ -143,12 +143,12 @@ bool jacobian_is_positive(const CurvedTriangle& n) {
   return true;
 }
 
-void check_triangle_jacobians(const Subject& subject, Findings& findings) {
-  const TetMesh& mesh = subject.mesh;
+void check_triangle_jacobians(const MeshToCheck& to_check, Findings& findings) {
+  const TetMesh& mesh = to_check.mesh;
   if (mesh.order() == 1) return;
   for (Index f = 0; f < mesh.faces.size(); ++f) {
     if (jacobian_is_positive(curved_face(mesh, f))) continue;
-    const Point where = subject.centroid(mesh.faces[f]);
+    const Point where = to_check.centroid(mesh.faces[f]);
     findings.add(guarantee::positive_jacobian, where, {f},
                  "Triangle {} of tag {} at {} is of second order and folds: its Jacobian is not positive "
                  "everywhere; put its mid-edge nodes nearer to the middles of its edges.",
@@ -172,21 +172,21 @@ void judge_shells(const TetMesh& given, const Plc& given_plc, const CheckOptions
   // Compute the tolerance before the regions are gone: it depends on them.
   CheckOptions own = options;
   own.bounds.tolerance = tolerance_of_any_size(given_plc, options.bounds);
-  Subject subject = make_subject(mesh, plc, own);
-  if (!check_points(subject, findings) || !check_labels(mesh, plc, findings)) return;
-  subject.match = match_features(mesh, plc, subject.rounding);
-  check_present(subject, 2, findings);
-  check_vertices(subject, findings);
-  check_edges(subject, findings);
-  check_angles(subject, report, findings);
+  MeshToCheck to_check = make_mesh_to_check(mesh, plc, own);
+  if (!check_points(to_check, findings) || !check_labels(mesh, plc, findings)) return;
+  to_check.match = match_features(mesh, plc, to_check.rounding);
+  check_present(to_check, 2, findings);
+  check_vertices(to_check, findings);
+  check_edges(to_check, findings);
+  check_angles(to_check, report, findings);
   if ((report.cancelled = execution.cancelled())) return;
-  check_curves(subject, report, findings);
-  check_patches(subject, report, findings);
+  check_curves(to_check, report, findings);
+  check_patches(to_check, report, findings);
   if ((report.cancelled = execution.cancelled())) return;
-  check_shell_orientation(subject, given_plc, findings);
-  check_second_order(subject, report, findings);
-  check_triangle_jacobians(subject, findings);
-  measure_without_tets(subject, 2, report);
+  check_shell_orientation(to_check, given_plc, findings);
+  check_second_order(to_check, report, findings);
+  check_triangle_jacobians(to_check, findings);
+  measure_without_tets(to_check, 2, report);
 }
 
 }  // namespace

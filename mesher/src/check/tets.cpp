@@ -3,8 +3,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "check/mesh_to_check.h"
 #include "check/predicates.h"
-#include "check/subject.h"
 #include "check/touched_features.h"
 #include "common/parallel_for.h"
 
@@ -35,14 +35,14 @@ class MissedAngles {
 
   /// Calls `add_finding(tet, features)`, with an empty text for findings that will not be listed.
   template <class AddFinding>
-  void report(const Subject& subject, const AddFinding& add_finding) {
+  void report(const MeshToCheck& to_check, const AddFinding& add_finding) {
     if (missed_.empty()) return;
     std::stable_sort(missed_.begin(), missed_.end(),
                      [](const Missed& a, const Missed& b) { return a.share > b.share; });
-    const TouchedFeatures touched(subject);
+    const TouchedFeatures touched(to_check);
     for (std::size_t i = 0; i < missed_.size(); ++i)
       add_finding(missed_[i].tet,
-                  i < subject.options.findings_per_guarantee ? touched.of(missed_[i].tet) : "");
+                  i < to_check.options.findings_per_guarantee ? touched.of(missed_[i].tet) : "");
   }
 
  private:
@@ -71,23 +71,23 @@ double missed_share(const TetQuality& quality, double face_angle, double smalles
   return std::isnan(share) ? INFINITY : share;
 }
 
-void check_shape(Index tet, const CornersOfTet& p, const TetQuality& quality, const Subject& subject,
+void check_shape(Index tet, const CornersOfTet& p, const TetQuality& quality, const MeshToCheck& to_check,
                  const ThinCells& thin, CheckReport& report, AllMissedAngles& missed, Findings& findings) {
-  const CheckOptions& options = subject.options;
-  if (subject.collar[tet] != 0) {
+  const CheckOptions& options = to_check.options;
+  if (to_check.collar[tet] != 0) {
     ++report.collar_tets;
     report.max_collar_dihedral = std::max(report.max_collar_dihedral, quality.max_dihedral);
     if (quality.max_dihedral > options.bounds.collar_angle * shape_slack)
       missed.collars.add(tet, quality.max_dihedral / options.bounds.collar_angle);
     report.min_collar_dihedral = std::min(report.min_collar_dihedral, quality.min_dihedral);
-    if (!subject.coarsened) return;
+    if (!to_check.coarsened) return;
   } else {
     report.min_dihedral = std::min(report.min_dihedral, quality.min_dihedral);
     report.max_dihedral = std::max(report.max_dihedral, quality.max_dihedral);
   }
   const bool within = quality.radius_edge <= options.bounds.radius_edge * shape_slack;
   if (!within && thin.claimed(tet)) {
-    if (subject.collar[tet] == 0) {
+    if (to_check.collar[tet] == 0) {
       ++report.thin_tets;
       report.max_thin_radius_edge = std::max(report.max_thin_radius_edge, quality.radius_edge);
     }
@@ -107,7 +107,7 @@ void check_shape(Index tet, const CornersOfTet& p, const TetQuality& quality, co
     missed.thin.add(tet, missed_share(quality, face_angle, thin.smallest_angle(tet)));
     return;
   }
-  if (subject.collar[tet] == 0)
+  if (to_check.collar[tet] == 0)
     report.max_radius_edge = std::max(report.max_radius_edge, quality.radius_edge);
   if (!within)
     findings.add(
@@ -117,20 +117,20 @@ void check_shape(Index tet, const CornersOfTet& p, const TetQuality& quality, co
         tet, At{p.centre()}, quality.radius_edge, options.bounds.radius_edge);
 }
 
-void report_missed_angles(const Subject& subject, const ThinCells& thin, AllMissedAngles& missed,
+void report_missed_angles(const MeshToCheck& to_check, const ThinCells& thin, AllMissedAngles& missed,
                           Findings& findings) {
-  missed.collars.report(subject, [&](Index tet, const std::string& features) {
-    const Point centre = corners_of(subject.mesh, tet).centre();
+  missed.collars.report(to_check, [&](Index tet, const std::string& features) {
+    const Point centre = corners_of(to_check.mesh, tet).centre();
     findings.add(
         guarantee::collar_dihedral, centre, {tet},
         "Tet {} of a collar at {}, {}, has a dihedral angle of {:.6g} degrees, allowed are {:.6g}; a smaller "
         "size there resolves the crease better.",
-        tet, At{centre}, features, measure_tet(subject.mesh, tet).max_dihedral,
-        subject.options.bounds.collar_angle);
+        tet, At{centre}, features, measure_tet(to_check.mesh, tet).max_dihedral,
+        to_check.options.bounds.collar_angle);
   });
-  missed.thin.report(subject, [&](Index tet, const std::string& features) {
-    const CornersOfTet p = corners_of(subject.mesh, tet);
-    const TetQuality quality = measure_tet(subject.mesh, tet);
+  missed.thin.report(to_check, [&](Index tet, const std::string& features) {
+    const CornersOfTet p = corners_of(to_check.mesh, tet);
+    const TetQuality quality = measure_tet(to_check.mesh, tet);
     findings.add(
         guarantee::thin_angles, p.centre(), {tet},
         "Tet {} at {}, {}, has dihedral angles from {:.6g} to {:.6g} degrees and face angles up to {:.6g}; "
@@ -138,15 +138,15 @@ void report_missed_angles(const Subject& subject, const ThinCells& thin, AllMiss
         "with the smallest angle of thin tets that the mesh was made with.",
         tet, At{p.centre()}, features, quality.min_dihedral, quality.max_dihedral,
         largest_face_angle(p.a, p.b, p.c, p.d), thin.smallest_angle(tet), ThinCells::largest_angle,
-        quality.radius_edge, subject.options.bounds.radius_edge);
+        quality.radius_edge, to_check.options.bounds.radius_edge);
   });
 }
 
-void check_region_tag(Index tet, const CornersOfTet& p, const Subject& subject, Findings& findings) {
-  const Index region = subject.mesh.tet_region[tet];
-  const Tag tag = subject.mesh.tet_tag[tet], expected = subject.plc.regions[region].tag;
+void check_region_tag(Index tet, const CornersOfTet& p, const MeshToCheck& to_check, Findings& findings) {
+  const Index region = to_check.mesh.tet_region[tet];
+  const Tag tag = to_check.mesh.tet_tag[tet], expected = to_check.plc.regions[region].tag;
   // Some formats store only the region, which is then read as the tag, too.
-  const bool unknown = subject.mesh.features.empty() && tag == static_cast<Tag>(region);
+  const bool unknown = to_check.mesh.features.empty() && tag == static_cast<Tag>(region);
   if (tag != expected && !unknown)
     findings.add(guarantee::region_tag, p.centre(), {tet},
                  "Tet {} at {} has tag {}, but its region {} has {}; correct the tag or the region.", tet,
@@ -155,30 +155,30 @@ void check_region_tag(Index tet, const CornersOfTet& p, const Subject& subject, 
 
 }  // namespace
 
-void check_tets(const Subject& subject, CheckReport& report, Findings& findings) {
-  assert(subject.collar.size() == subject.mesh.tets.size());
-  const TetMesh& mesh = subject.mesh;
-  std::vector<long double> volumes(subject.plc.regions.size(), 0);
-  const ThinCells thin(subject);
+void check_tets(const MeshToCheck& to_check, CheckReport& report, Findings& findings) {
+  assert(to_check.collar.size() == to_check.mesh.tets.size());
+  const TetMesh& mesh = to_check.mesh;
+  std::vector<long double> volumes(to_check.plc.regions.size(), 0);
+  const ThinCells thin(to_check);
   AllMissedAngles missed;
   const auto see = [&](Index tet, const TetQuality& quality) {
     const CornersOfTet p = corners_of(mesh, tet);
     const bool is_thin =
-        thin.claimed(tet) && quality.radius_edge > subject.options.bounds.radius_edge * shape_slack;
-    if (tet < subject.first_part) {
+        thin.claimed(tet) && quality.radius_edge > to_check.options.bounds.radius_edge * shape_slack;
+    if (tet < to_check.first_part) {
       report.measures.add(tet, quality, mesh.tet_region[tet],
-                          subject.collar[tet] != 0 ? MeshMeasures::Kind::collar
-                          : is_thin                ? MeshMeasures::Kind::thin
-                                                   : MeshMeasures::Kind::plain);
+                          to_check.collar[tet] != 0 ? MeshMeasures::Kind::collar
+                          : is_thin                 ? MeshMeasures::Kind::thin
+                                                    : MeshMeasures::Kind::plain);
       check_orientation({"Tet", tet}, {p.a, p.b, p.c, p.d}, quality.volume, findings);
     } else {
       report.measures.region_volumes[mesh.tet_region[tet]] += quality.volume;
     }
-    if (!subject.has_layers())
-      check_shape(tet, p, quality, subject, thin, report, missed, findings);
+    if (!to_check.has_layers())
+      check_shape(tet, p, quality, to_check, thin, report, missed, findings);
     else if (mesh.layers.tet_layer[tet] == 0)
       note_angles(quality, report);
-    check_region_tag(tet, p, subject, findings);
+    check_region_tag(tet, p, to_check, findings);
     volumes[mesh.tet_region[tet]] += quality.volume;
   };
   // All threads measure; findings and sums are made in the order of the tets.
@@ -192,7 +192,7 @@ void check_tets(const Subject& subject, CheckReport& report, Findings& findings)
     });
     for (std::size_t i = 0; i < count; ++i) see(static_cast<Index>(first + i), qualities[i]);
   }
-  report_missed_angles(subject, thin, missed, findings);
+  report_missed_angles(to_check, thin, missed, findings);
   report.region_volumes.assign(volumes.begin(), volumes.end());
 }
 

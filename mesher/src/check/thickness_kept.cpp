@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "check/subject.h"
+#include "check/mesh_to_check.h"
 #include "common/parallel_for.h"
 #include "tolerance/thickness.h"
 
@@ -52,17 +52,17 @@ struct Thicknesses {
 
 class ThicknessKept {
  public:
-  explicit ThicknessKept(const Subject& subject)
-      : subject_(subject),
-        thickness_(subject.plc),
-        faces_(subject.mesh),
-        hierarchy_(subject.mesh.points, faces_.triangles) {}
+  explicit ThicknessKept(const MeshToCheck& to_check)
+      : to_check_(to_check),
+        thickness_(to_check.plc),
+        faces_(to_check.mesh),
+        hierarchy_(to_check.mesh.points, faces_.triangles) {}
 
   void judge(CheckReport& report, Findings& findings) const {
-    const std::size_t count = subject_.plc.patches.size();
+    const std::size_t count = to_check_.plc.patches.size();
     std::vector<std::array<Thicknesses, 2>> sides(count);
     parallel_for(count, [&](std::size_t p) {
-      if (subject_.plc.patches[p].planar) return;
+      if (to_check_.plc.patches[p].planar) return;
       for (unsigned side = 0; side < 2; ++side) sides[p][side] = along(static_cast<Index>(p), side);
     });
     for (Index p = 0; p < count; ++p)
@@ -80,7 +80,7 @@ class ThicknessKept {
   static constexpr Index most_rays = 2000;  // maximum number for each patch and side
 
   Thicknesses along(Index patch, unsigned side) const {
-    const Plc::Patch& of = subject_.plc.patches[patch];
+    const Plc::Patch& of = to_check_.plc.patches[patch];
     const Index stride = 1 + of.triangle_count / most_rays;
     Thicknesses sums;
     Thickness::Crossings crossings;
@@ -90,12 +90,12 @@ class ThicknessKept {
   }
 
   void add(Index triangle, unsigned side, Thickness::Crossings& crossings, Thicknesses& sums) const {
-    const Plc& plc = subject_.plc;
+    const Plc& plc = to_check_.plc;
     const Thickness::Ray ray = thickness_.ray(triangle, side);
     const Thickness::Opposite opposite = thickness_.at(triangle, side, crossings).first;
     const Plc::Triangle& t = plc.triangles[triangle];
     const double weight =
-        area(subject_.plc_corner(t, 0), subject_.plc_corner(t, 1), subject_.plc_corner(t, 2));
+        area(to_check_.plc_corner(t, 0), to_check_.plc_corner(t, 1), to_check_.plc_corner(t, 2));
     sums.area += weight;
     if (opposite.triangle == none || opposite.facing < least_facing) return;
     sums.area_with += weight;
@@ -117,13 +117,13 @@ class ThicknessKept {
   /// places in the complex. NaN if there is none.
   double between(const Thickness::Ray& ray, double distance, Index patch, Index other, Index region,
                  Thickness::Crossings& crossings) const {
-    const TetMesh& mesh = subject_.mesh;
+    const TetMesh& mesh = to_check_.mesh;
     const Index root = hierarchy_.root();
     hierarchy_.crossings(ray.from - distance * ray.way, ray.from + 2 * distance * ray.way, {&root, 1},
                          crossings);
     double entered = INFINITY, left = INFINITY;  // differences from the places in the complex
     for (const auto& [triangle, direction] : crossings) {
-      const Index face = faces_.face[triangle], of = subject_.match.face_patch[face];
+      const Index face = faces_.face[triangle], of = to_check_.match.face_patch[face];
       const auto& regions = mesh.face_regions[face];
       const Index behind = regions[direction > 0 ? 0 : 1], ahead = regions[direction > 0 ? 1 : 0];
       const double at = place_on(ray, triangle);
@@ -141,7 +141,7 @@ class ThicknessKept {
 
   void judge(Index patch, unsigned side, const Thicknesses& sums, CheckReport& report,
              Findings& findings) const {
-    const Plc& plc = subject_.plc;
+    const Plc& plc = to_check_.plc;
     if (sums.area_with < least_part * sums.area) return;
     if (!(std::fabs(sums.mesh - sums.input) > allowed * sums.input)) return;
     const bool is_gap = plc.patches[patch].regions[side] == 0;
@@ -151,14 +151,14 @@ class ThicknessKept {
         is_gap ? "gap" : "wall", plc.patches[patch].tag, plc.patches[sums.opposite].tag, sums.where.x,
         sums.where.y, sums.where.z, 100 * std::fabs(sums.mesh / sums.input - 1),
         sums.mesh < sums.input ? "thinner" : "thicker");
-    if (subject_.options.bounds.distance <= 0)
+    if (to_check_.options.bounds.distance <= 0)
       findings.add(guarantee::thickness_kept, sums.where, {patch, sums.opposite},
                    "{}; allowed are {:.0f} %. Ask for a smaller size or distance.", found, 100 * allowed);
     else
       report.warnings.push_back(found + "; a smaller size or distance reduces the difference.");
   }
 
-  const Subject& subject_;
+  const MeshToCheck& to_check_;
   Thickness thickness_;
   Faces faces_;
   TriangleHierarchy hierarchy_;
@@ -166,11 +166,11 @@ class ThicknessKept {
 
 }  // namespace
 
-void check_thickness_kept(const Subject& subject, CheckReport& report, Findings& findings) {
-  assert(subject.is_matched());
-  const auto& patches = subject.plc.patches;
+void check_thickness_kept(const MeshToCheck& to_check, CheckReport& report, Findings& findings) {
+  assert(to_check.is_matched());
+  const auto& patches = to_check.plc.patches;
   if (std::ranges::all_of(patches, [](const Plc::Patch& patch) { return patch.planar; })) return;
-  ThicknessKept(subject).judge(report, findings);
+  ThicknessKept(to_check).judge(report, findings);
 }
 
 }  // namespace collarmesh::checks

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
-#include "check/subject.h"
+#include "check/mesh_to_check.h"
 #include "collarmesh/plc_builder.h"
 
 namespace collarmesh::checks {
@@ -14,42 +14,42 @@ constexpr double thin_slack = 1e-9;  // relative tolerance
 
 }  // namespace
 
-std::vector<TetMesh::VertexFeature> features_of(const Subject& subject) {
-  assert(subject.is_matched());
-  std::vector<TetMesh::VertexFeature> features(subject.mesh.points.size());
-  for (Index f = 0; f < subject.mesh.faces.size(); ++f)
-    for (const Index p : subject.mesh.faces[f])
-      if (subject.match.face_patch[f] != none) features[p] = {2, subject.match.face_patch[f]};
-  for (Index e = 0; e < subject.mesh.edges.size(); ++e)
-    for (const Index p : subject.mesh.edges[e])
-      if (subject.match.edge_curve[e] != none) features[p] = {1, subject.match.edge_curve[e]};
-  for (Index v = 0; v < subject.match.vertex_point.size(); ++v)
-    if (const Index p = subject.match.vertex_point[v]; p != none) features[p] = {0, v};
+std::vector<TetMesh::VertexFeature> features_of(const MeshToCheck& to_check) {
+  assert(to_check.is_matched());
+  std::vector<TetMesh::VertexFeature> features(to_check.mesh.points.size());
+  for (Index f = 0; f < to_check.mesh.faces.size(); ++f)
+    for (const Index p : to_check.mesh.faces[f])
+      if (to_check.match.face_patch[f] != none) features[p] = {2, to_check.match.face_patch[f]};
+  for (Index e = 0; e < to_check.mesh.edges.size(); ++e)
+    for (const Index p : to_check.mesh.edges[e])
+      if (to_check.match.edge_curve[e] != none) features[p] = {1, to_check.match.edge_curve[e]};
+  for (Index v = 0; v < to_check.match.vertex_point.size(); ++v)
+    if (const Index p = to_check.match.vertex_point[v]; p != none) features[p] = {0, v};
   return features;
 }
 
-ThinCells::ThinCells(const Subject& subject)
-    : mesh_(subject.mesh),
-      subject_(subject),
-      smallest_(subject.options.bounds.thin_angle),
-      marks_(subject.mesh.tet_thin),
-      all_(marks_.empty() && subject.mesh.features.empty()) {
-  assert(subject.is_matched());
-  if (!(smallest_ > 0) || (marks_.empty() && !all_ && !subject.coarsened)) return;
-  const Plc& plc = subject.plc;
-  forced_.emplace(plc, features_of(subject), mesh_.points, mesh_.faces, subject.match.face_patch,
+ThinCells::ThinCells(const MeshToCheck& to_check)
+    : mesh_(to_check.mesh),
+      to_check_(to_check),
+      smallest_(to_check.options.bounds.thin_angle),
+      marks_(to_check.mesh.tet_thin),
+      all_(marks_.empty() && to_check.mesh.features.empty()) {
+  assert(to_check.is_matched());
+  if (!(smallest_ > 0) || (marks_.empty() && !all_ && !to_check.coarsened)) return;
+  const Plc& plc = to_check.plc;
+  forced_.emplace(plc, features_of(to_check), mesh_.points, mesh_.faces, to_check.match.face_patch,
                   ForcedEdges::least_cosine_of_sides);
-  const Bounds& bounds = subject.options.bounds;
+  const Bounds& bounds = to_check.options.bounds;
   if (bounds.thin_in_narrow_places_only)
-    narrow_.emplace(plc, features_of(subject), *forced_, bounds.crease_angle, 1 / bounds.radius_edge);
+    narrow_.emplace(plc, features_of(to_check), *forced_, bounds.crease_angle, 1 / bounds.radius_edge);
   std::vector<double> of_curve(plc.curves.size(), smallest_);
   const auto lower_at_vertex = [&](Index vertex, double bound) {
-    if (vertex == none || subject.match.vertex_point[vertex] == none) return;
-    double& least = at_point_[subject.match.vertex_point[vertex]];
+    if (vertex == none || to_check.match.vertex_point[vertex] == none) return;
+    double& least = at_point_[to_check.match.vertex_point[vertex]];
     least = std::min(least, bound);
   };
   for (const Crease& crease : find_creases(plc, 2 * bounds.tets_across() * smallest_)) {
-    at_point_.resize(subject.mesh.points.size(), smallest_);
+    at_point_.resize(to_check.mesh.points.size(), smallest_);
     const double bound = 0.5 * crease.angle / bounds.tets_across();
     lower_at_vertex(crease.vertex, bound);
     if (crease.curve == none) continue;
@@ -57,20 +57,20 @@ ThinCells::ThinCells(const Subject& subject)
     for (const Index end : plc.curves[crease.curve].ends) lower_at_vertex(end, bound);
   }
   if (at_point_.empty()) return;
-  for (Index e = 0; e < subject.mesh.edges.size(); ++e) {
-    const Index curve = subject.match.edge_curve[e];
+  for (Index e = 0; e < to_check.mesh.edges.size(); ++e) {
+    const Index curve = to_check.match.edge_curve[e];
     if (curve == none) continue;
-    for (const Index p : subject.mesh.edges[e]) at_point_[p] = std::min(at_point_[p], of_curve[curve]);
+    for (const Index p : to_check.mesh.edges[e]) at_point_[p] = std::min(at_point_[p], of_curve[curve]);
   }
 }
 
 bool ThinCells::claimed(Index tet) const {
   return smallest_ > 0 && (all_ || (tet < marks_.size() && marks_[tet] != 0) ||
-                           (subject_.coarsened && subject_.collar[tet] != 0));
+                           (to_check_.coarsened && to_check_.collar[tet] != 0));
 }
 
 bool ThinCells::has_place(Index tet) const {
-  if (!narrow_ || subject_.collar[tet] != 0) return true;
+  if (!narrow_ || to_check_.collar[tet] != 0) return true;
   const auto& [a, b, c, d] = mesh_.tets[tet];
   return narrow_->contain({mesh_.points[a], mesh_.points[b], mesh_.points[c], mesh_.points[d]}, {a, b, c, d});
 }
@@ -83,7 +83,7 @@ double ThinCells::forced_angle(Index tet) const {
   const auto& [a, b, c, d] = mesh_.tets[tet];
   return ForcedEdges::smallest_angle(forced_->narrowness(
              {mesh_.points[a], mesh_.points[b], mesh_.points[c], mesh_.points[d]}, {a, b, c, d})) /
-         subject_.options.bounds.tets_across();
+         to_check_.options.bounds.tets_across();
 }
 
 double ThinCells::smallest_angle_at(const std::array<Index, 4>& tet) const {

@@ -52,10 +52,10 @@ Tag tag_of(const Plc& plc, std::size_t dimension, Index feature) {
   }
 }
 
-std::string label(const Subject& subject, std::size_t dimension, Index feature) {
-  const Tag tag = tag_of(subject.plc, dimension, feature);
-  const std::string* given = subject.plc.names.find(dimension, tag);
-  const std::string name = given != nullptr ? *given : group_name(subject.mesh, dimension, tag);
+std::string label(const MeshToCheck& to_check, std::size_t dimension, Index feature) {
+  const Tag tag = tag_of(to_check.plc, dimension, feature);
+  const std::string* given = to_check.plc.names.find(dimension, tag);
+  const std::string name = given != nullptr ? *given : group_name(to_check.mesh, dimension, tag);
   const bool says_more = name != group_name(GroupNames::complex, dimension, tag);
   return fmt::format("{} {} (tag {}{}{})", kind_names[dimension], feature, tag, says_more ? ", " : "",
                      says_more ? name : "");
@@ -63,13 +63,13 @@ std::string label(const Subject& subject, std::size_t dimension, Index feature) 
 
 }  // namespace
 
-TouchedFeatures::TouchedFeatures(const Subject& subject)
-    : subject_(subject), features_(features_of(subject)) {}
+TouchedFeatures::TouchedFeatures(const MeshToCheck& to_check)
+    : to_check_(to_check), features_(features_of(to_check)) {}
 
 std::string TouchedFeatures::of(Index tet) const {
-  const Plc& plc = subject_.plc;
+  const Plc& plc = to_check_.plc;
   std::array<Touched, 3> touched;
-  for (const Index corner : subject_.mesh.tets[tet]) {
+  for (const Index corner : to_check_.mesh.tets[tet]) {
     const auto [dimension, feature] = features_[corner];
     if (dimension > 2) continue;
     touched[dimension].add(feature);
@@ -81,10 +81,10 @@ std::string TouchedFeatures::of(Index tet) const {
   for (std::size_t dimension = 0; dimension < touched.size(); ++dimension) {
     const std::vector<Index> features = touched[dimension].most_touched_first();
     for (std::size_t i = 0; i < std::min(named_per_kind, features.size()); ++i)
-      names += fmt::format("{}{}", names.empty() ? "" : ", ", label(subject_, dimension, features[i]));
+      names += fmt::format("{}{}", names.empty() ? "" : ", ", label(to_check_, dimension, features[i]));
     if (features.size() > named_per_kind) names += ", ...";
   }
-  return fmt::format("in {} and touching {}", label(subject_, 3, subject_.mesh.tet_region[tet]),
+  return fmt::format("in {} and touching {}", label(to_check_, 3, to_check_.mesh.tet_region[tet]),
                      names.empty() ? "no feature" : names);
 }
 

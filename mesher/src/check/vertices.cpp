@@ -1,5 +1,5 @@
 // Checks that the complex's vertices are in the mesh, and the features that the mesh gives for its points.
-#include "check/subject.h"
+#include "check/mesh_to_check.h"
 
 #include <cassert>
 
@@ -26,25 +26,25 @@ class FeatureOfPoint {
 
 }  // namespace
 
-void check_vertices_present(const Subject& subject, Findings& findings) {
-  assert(subject.match.vertex_point.size() == subject.plc.vertices.size());
-  const Plc& plc = subject.plc;
+void check_vertices_present(const MeshToCheck& to_check, Findings& findings) {
+  assert(to_check.match.vertex_point.size() == to_check.plc.vertices.size());
+  const Plc& plc = to_check.plc;
   for (Index v = 0; v < plc.vertices.size(); ++v) {
     const Point& where = plc.points[plc.vertices[v].point];
-    if (subject.match.vertex_point[v] != none || vertex_is_outside(subject, v)) continue;
+    if (to_check.match.vertex_point[v] != none || vertex_is_outside(to_check, v)) continue;
     findings.add(guarantee::vertex_present, where, {v},
                  "Vertex {} of the complex at {} is not a point of the mesh; a feature was lost there.", v,
                  At{where});
   }
 }
 
-void check_vertices(const Subject& subject, Findings& findings) {
-  assert(subject.is_matched());
-  check_vertices_present(subject, findings);
-  const TetMesh& mesh = subject.mesh;
+void check_vertices(const MeshToCheck& to_check, Findings& findings) {
+  assert(to_check.is_matched());
+  check_vertices_present(to_check, findings);
+  const TetMesh& mesh = to_check.mesh;
   if (mesh.features.empty()) return;
   FeatureOfPoint vertices(mesh.points.size()), curves(mesh.points.size()), patches(mesh.points.size());
-  const FeatureMatch& match = subject.match;
+  const FeatureMatch& match = to_check.match;
   for (Index v = 0; v < match.vertex_point.size(); ++v)
     if (match.vertex_point[v] != none) vertices.add(match.vertex_point[v], v);
   for (Index e = 0; e < mesh.edges.size(); ++e) {

@@ -42,10 +42,10 @@ constexpr double repaired_below = 0.65;
 constexpr double asked_inside_below = 0.75;
 constexpr unsigned most_sweeps = 8;
 // A pass that removes a smaller share of the tets ends its round. After such a round, if improvement before
-// it found nothing more and at least one in `contractions_per_repair` contractions needed repairs, all
+// it found nothing more and at least one in `collapses_per_repair` collapses needed repairs, all
 // vertices are tried again.
 constexpr double least_share = 0.005;
-constexpr std::size_t contractions_per_repair = 10;
+constexpr std::size_t collapses_per_repair = 10;
 constexpr std::size_t steps_between_reports = 4096;
 // If more than one change in this many tets was logged, looking at all tets costs less than finding the tets
 // at the changed vertices.
@@ -106,7 +106,7 @@ class Coarsening {
     report_.tets_before = tets_ = complex().size();
     edited_.prepare();
     for (unsigned pass = 0; pass < plain_passes && !report_.cancelled; ++pass)
-      if (!contract_all(false)) break;
+      if (!collapse_all(false)) break;
     // Whether a round begins with all vertices, not only with those at which something has changed: repairs
     // reach beyond the tets at a vertex, so changes farther away may have made more collapses possible.
     bool ask_all = false;
@@ -115,10 +115,9 @@ class Coarsening {
       const std::size_t before = tets_;
       if (ask_all) last_pass_ = last_repairs_ = 0;
       for (unsigned pass = 0; pass < repair_passes; ++pass)
-        if (!contract_all(true)) break;
+        if (!collapse_all(true)) break;
       const bool is_done = settled && !worthwhile(before);
-      if (is_done && (ask_all || report_.repaired * contractions_per_repair < report_.contracted_edges))
-        break;
+      if (is_done && (ask_all || report_.repaired * collapses_per_repair < report_.contracted_edges)) break;
       ask_all = is_done;
     }
     finish();
@@ -179,7 +178,7 @@ class Coarsening {
 
   // Finds the edges of a tet that are short enough to try the vertices at their ends.
   void find_short_edges(Index tet, std::vector<ShortEdge>& ends) const {
-    constexpr double surely_long = (1 + 1e-9) * contracted_below;
+    constexpr double surely_long = (1 + 1e-9) * collapsed_below;
     const auto& v = complex()[tet].corners;
     const auto p = complex().corners(tet);
     for (const auto& [i, j] : cell_shapes::corner_pairs) {
@@ -198,7 +197,7 @@ class Coarsening {
   }
 
   // Tries every vertex once. Returns whether another pass is worthwhile.
-  bool contract_all(bool repair) {
+  bool collapse_all(bool repair) {
     const std::vector<Candidate> candidates = find_candidates(repair);
     last_pass_ = changes_.advance();
     if (repair) last_repairs_ = last_pass_;
@@ -218,7 +217,7 @@ class Coarsening {
                },
                [&](const Candidate& candidate, VertexProposal& found) {
                  if (stopped()) return false;
-                 contract(candidate.vertex, found);
+                 collapse(candidate.vertex, found);
                  return true;
                }) &&
            worthwhile(before);
@@ -233,7 +232,7 @@ class Coarsening {
         return;
       }
     if (complex().in_use(v))
-      proposer.contractions(v, candidate.worth_repairs, found);
+      proposer.collapses(v, candidate.worth_repairs, found);
     else
       found = {};
   }
@@ -250,7 +249,7 @@ class Coarsening {
     return report_.cancelled;
   }
 
-  void contract(Index vertex, VertexProposal& found) {
+  void collapse(Index vertex, VertexProposal& found) {
     if (!found.change.is_none()) {
       forget_touched();
       apply(std::move(found.change));
@@ -262,7 +261,7 @@ class Coarsening {
     looked_at_ = found.read;
     looked_at_.push_back(vertex);
     for (Change& change : found.to_repair)
-      if (contract_and_repair(std::move(change), found.floor)) return;
+      if (collapse_and_repair(std::move(change), found.floor)) return;
     // Whether an edge of a curve can be spared depends on more than the tets around; and not all tets at a
     // pinched vertex are found.
     if (mesh().features[vertex].dimension > 1 &&
@@ -270,7 +269,7 @@ class Coarsening {
       failed_.note(vertex, looked_at_, changes_.now());
   }
 
-  bool contract_and_repair(Change change, double floor) {
+  bool collapse_and_repair(Change change, double floor) {
     Trial trial(edited_);
     forget_touched();
     examined_.clear();

@@ -29,10 +29,11 @@ class CoarseningRule final : public AngleRule {
 
   double quality_of(const ExtremeCosines& cosines, const Corners& p,
                     const std::array<Index, 4>& corners) const override {
-    const auto [sharp, blunt] = thin_.squared_margins(cosines, p, corners);
-    if (blunt < 0) return -1;
-    if (blunt < 1 && mode_ != Mode::force) return beyond * std::sqrt(blunt * std::min(1.0, sharp));
-    const double quality = std::sqrt(std::min(blunt, sharp));
+    const auto [of_smallest, of_largest] = thin_.squared_margins(cosines, p, corners);
+    if (of_largest < 0) return -1;
+    if (of_largest < 1 && mode_ != Mode::force)
+      return beyond * std::sqrt(of_largest * std::min(1.0, of_smallest));
+    const double quality = std::sqrt(std::min(of_largest, of_smallest));
     const bool fits = mode_ == Mode::force || !cells_.forbid_thin_tets() || cells_.allow(p, corners);
     return fits ? quality : CellBounds::forbidden * std::min(1.0, quality);
   }

@@ -16,7 +16,7 @@ constexpr double repairable = 0.15;
 }  // namespace
 
 // Finds the collapses of a vertex. Lengths rule out most neighbours, at less cost than shapes.
-void Proposer::contractions(Index vertex, bool repairs, VertexProposal& found) {
+void Proposer::collapses(Index vertex, bool repairs, VertexProposal& found) {
   found = {};
   find_neighbours(vertex);
   targets_.clear();
@@ -26,12 +26,12 @@ void Proposer::contractions(Index vertex, bool repairs, VertexProposal& found) {
   }
   if (targets_.empty()) return;
   rule_.set_mode(Mode::final);
-  if (!operations_.begin_contractions(vertex, star_)) return;
+  if (!operations_.begin_collapses(vertex, star_)) return;
   // On features the link condition also depends on the tets at the other end.
   const bool looks_beyond = complex().mesh().features[vertex].dimension < 3;
   for (const Index onto : targets_) {
     if (looks_beyond) found.read.push_back(onto);
-    operations_.contract_onto(onto, 0, 1, found.change);
+    operations_.collapse_onto(onto, 0, 1, found.change);
     if (!found.change.is_none()) return;
   }
   if (!repairs) return;
@@ -39,7 +39,7 @@ void Proposer::contractions(Index vertex, bool repairs, VertexProposal& found) {
   rule_.set_mode(Mode::force);
   for (const Index onto : targets_) {
     Change change;
-    operations_.contract_onto(onto, repairable, -INFINITY, change);
+    operations_.collapse_onto(onto, repairable, -INFINITY, change);
     if (!change.is_none()) found.to_repair.push_back(std::move(change));
   }
 }

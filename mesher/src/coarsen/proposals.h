@@ -40,7 +40,7 @@ class Proposer {
   Proposer& operator=(const Proposer&) = delete;
 
   /// Finds collapses of a vertex; if there is none, and `repairs` is set, collapses that need repairs.
-  void contractions(Index vertex, bool repairs, VertexProposal& found);
+  void collapses(Index vertex, bool repairs, VertexProposal& found);
   /// Returns a change that makes a tet better: the removal of an edge (the longest one that makes it good
   /// enough, or else the best one), or a move of a corner.
   Change improvement_of(Index tet, Mode mode);
@@ -78,9 +78,7 @@ class Proposer {
 constexpr double improved_below = 1.3;
 
 /// Edges below this times the target length are collapsed.
-constexpr double contracted_below = 0.8;
-constexpr bool is_short(double squared_length) {
-  return squared_length < contracted_below * contracted_below;
-}
+constexpr double collapsed_below = 0.8;
+constexpr bool is_short(double squared_length) { return squared_length < collapsed_below * collapsed_below; }
 
 }  // namespace collarmesh::remeshing::coarsening

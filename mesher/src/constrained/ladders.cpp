@@ -341,7 +341,7 @@ class Ladders {
   Index first_point_;  // the first point that was added
   std::vector<Triangle> triangles_;
   std::unordered_map<std::uint64_t, Edge> edges_;
-  std::vector<std::uint64_t> keys_;  // of all edges, also of former ones, in order; some more than once
+  std::vector<std::uint64_t> keys_;  // keys of all edges, also of former ones, in order; some more than once
   std::vector<Rail> rails_;
   std::unordered_map<std::uint64_t, std::vector<Index>> chains_;  // by rail: its points
 };

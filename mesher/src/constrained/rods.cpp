@@ -32,7 +32,7 @@ class Filling {
   std::size_t ring_size() const { return rod_.in_ring(); }
   Index at(std::size_t ring, std::size_t k) const {
     const std::size_t n = ring_size();
-    if (ring == rod_.rings().size()) return at(0, k + n - rod_.shift());  // of a loop
+    if (ring == rod_.rings().size()) return at(0, k + n - rod_.shift());  // a loop ends where it begins
     return first_ + static_cast<Index>(ring * n + k % n);
   }
   Index axis(std::size_t step) const {

@@ -23,7 +23,8 @@ using Edge = std::array<Index, 2>;
 // cut at every point of the group in between.
 class CollinearGroups {
  public:
-  CollinearGroups(const Draft& draft, const std::vector<Index>& flat) : draft_(draft), points_(flat.size()) {
+  CollinearGroups(const ComplexDraft& draft, const std::vector<Index>& flat)
+      : draft_(draft), points_(flat.size()) {
     DisjointSets sets(flat.size());
     for (Index i = 0; i < flat.size(); ++i)
       for (unsigned side = 0; side < 3; ++side) {
@@ -52,13 +53,14 @@ class CollinearGroups {
   }
 
  private:
-  const Draft& draft_;
+  const ComplexDraft& draft_;
   std::map<Edge, Index> group_of_edge_;
   std::vector<std::vector<Index>> points_;  // by group
 };
 
 // Cuts a triangle at the cuts of its sides. Each step makes a fan from the corner opposite a side with cuts.
-void add_cut(const Corners& triangle, const Origin& origin, const CollinearGroups& groups, Draft& result) {
+void add_cut(const Corners& triangle, const Origin& origin, const CollinearGroups& groups,
+             ComplexDraft& result) {
   std::vector<Corners> stack{triangle};
   while (!stack.empty()) {
     const Corners t = stack.back();
@@ -77,7 +79,7 @@ void add_cut(const Corners& triangle, const Origin& origin, const CollinearGroup
   }
 }
 
-void add_cut(const Segment& segment, const CollinearGroups& groups, Draft& result) {
+void add_cut(const Segment& segment, const CollinearGroups& groups, ComplexDraft& result) {
   Segment piece = segment;
   for (const Index cut : groups.cuts(segment.a, segment.b)) {
     piece.b = cut;
@@ -88,25 +90,28 @@ void add_cut(const Segment& segment, const CollinearGroups& groups, Draft& resul
   result.segments.push_back(piece);
 }
 
-struct Twin {
+// A triangle as sorting by corners needs it.
+struct TriangleByCorners {
   Corners key;  // sorted corners
   Index triangle;
 
-  friend bool operator<(const Twin& a, const Twin& b) {
+  friend bool operator<(const TriangleByCorners& a, const TriangleByCorners& b) {
     return std::tie(a.key, a.triangle) < std::tie(b.key, b.triangle);
   }
 };
 
 // Sorts triangles so that those with the same corners follow each other, in their original order.
-std::vector<Twin> sort_by_corners(const Draft& draft) {
-  const auto twin = [&](std::size_t t) { return Twin{sorted(draft.triangles[t]), static_cast<Index>(t)}; };
-  return sorted_by_vertex(draft.triangles.size(), draft.points.size(), twin,
-                          [](const Twin& t) { return t.key[0]; });
+std::vector<TriangleByCorners> sort_by_corners(const ComplexDraft& draft) {
+  const auto by_corners = [&](std::size_t t) {
+    return TriangleByCorners{sorted(draft.triangles[t]), static_cast<Index>(t)};
+  };
+  return sorted_by_vertex(draft.triangles.size(), draft.points.size(), by_corners,
+                          [](const TriangleByCorners& t) { return t.key[0]; });
 }
 
 // Removes the marked triangles and renumbers the claims on the remaining ones. Returns the number of removed
 // triangles.
-Index compact(Draft& draft, const std::vector<bool>& removed) {
+Index compact(ComplexDraft& draft, const std::vector<bool>& removed) {
   std::vector<Index> moved(draft.triangles.size());
   Index kept = 0;
   for (Index t = 0; t < draft.triangles.size(); ++t) {
@@ -124,14 +129,14 @@ Index compact(Draft& draft, const std::vector<bool>& removed) {
 
 }  // namespace
 
-void remove_collinear_triangles(Draft& draft) {
+void remove_collinear_triangles(ComplexDraft& draft) {
   std::vector<Index> flat;
   for (Index t = 0; t < draft.triangles.size(); ++t)
     if (collinear(draft.corner(t, 0), draft.corner(t, 1), draft.corner(t, 2))) flat.push_back(t);
   draft.cleanup.degenerate_triangles += static_cast<Index>(flat.size());
   if (flat.empty()) return;
   const CollinearGroups groups(draft, flat);
-  Draft result;
+  ComplexDraft result;
   for (Index t = 0, next = 0; t < draft.triangles.size(); ++t) {
     if (next < flat.size() && flat[next] == t)
       ++next;
@@ -144,8 +149,8 @@ void remove_collinear_triangles(Draft& draft) {
   draft.origins = std::move(result.origins);
 }
 
-void remove_twins_within_soups(Draft& draft) {
-  const std::vector<Twin> order = sort_by_corners(draft);
+void remove_duplicates_within_soups(ComplexDraft& draft) {
+  const std::vector<TriangleByCorners> order = sort_by_corners(draft);
   std::vector<bool> removed(draft.triangles.size(), false);
   for (std::size_t i = 1; i < order.size(); ++i)
     removed[order[i].triangle] =
@@ -154,8 +159,8 @@ void remove_twins_within_soups(Draft& draft) {
   draft.cleanup.repeated_triangles += compact(draft, removed);
 }
 
-void merge_twins_across_soups(Draft& draft) {
-  const std::vector<Twin> order = sort_by_corners(draft);
+void merge_duplicates_across_soups(ComplexDraft& draft) {
+  const std::vector<TriangleByCorners> order = sort_by_corners(draft);
   std::vector<bool> removed(draft.triangles.size(), false);
   std::set<std::pair<Tag, Tag>> replaced;
   for (std::size_t i = 1, first = 0; i < order.size(); ++i) {

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "facets/draft.h"
+#include "facets/complex_draft.h"
 
 namespace collarmesh::facets {
 

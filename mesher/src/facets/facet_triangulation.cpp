@@ -39,7 +39,7 @@ Vector area_vector(const std::vector<Point>& points, const std::vector<Index>& l
 class FacetTriangulator {
  public:
   /// With `bent`, approximates facets that are not planar polygons; without, reports them as faults.
-  FacetTriangulator(Draft& draft, Faults& faults, BentFacets* bent)
+  FacetTriangulator(ComplexDraft& draft, Faults& faults, BentFacets* bent)
       : draft_(draft), faults_(faults), bent_(bent) {}
 
   void add(const Facet& facet) {
@@ -246,7 +246,7 @@ class FacetTriangulator {
     }
   }
 
-  Draft& draft_;
+  ComplexDraft& draft_;
   Faults& faults_;
   BentFacets* bent_;
   unsigned axis_ = 0;  // the coordinate that projection drops
@@ -285,7 +285,7 @@ void add_polygon(std::span<const Index> polygon, const std::vector<Index>& merge
   if (loop.size() > 2) facet.loops.push_back(std::move(loop));
 }
 
-void triangulate(std::span<const PolygonSoup> soups, const PointMap& map, Draft& draft, Faults& faults,
+void triangulate(std::span<const PolygonSoup> soups, const PointMap& map, ComplexDraft& draft, Faults& faults,
                  BentFacets* bent) {
   FacetTriangulator triangulator(draft, faults, bent);
   for (Index s = 0; s < soups.size(); ++s) {
@@ -315,12 +315,13 @@ void triangulate(std::span<const PolygonSoup> soups, const PointMap& map, Draft&
 
 }  // namespace
 
-void triangulate_facets(std::span<const PolygonSoup> soups, const PointMap& map, Draft& draft,
+void triangulate_facets(std::span<const PolygonSoup> soups, const PointMap& map, ComplexDraft& draft,
                         Faults& faults) {
   triangulate(soups, map, draft, faults, nullptr);
 }
 
-BentFacets triangulate_any_facets(std::span<const PolygonSoup> soups, const PointMap& map, Draft& draft) {
+BentFacets triangulate_any_facets(std::span<const PolygonSoup> soups, const PointMap& map,
+                                  ComplexDraft& draft) {
   BentFacets bent;
   Faults none_found;
   triangulate(soups, map, draft, none_found, &bent);

@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "facets/draft.h"
+#include "facets/complex_draft.h"
 #include "facets/faults.h"
 #include "facets/weld.h"
 
@@ -12,7 +12,7 @@ namespace collarmesh::facets {
 /// triangles with two equal corners. A facet is triangulated by the constrained Delaunay triangulation in its
 /// plane; the parts outside its border and around hole points are empty, as in TetGen. Faults: polygons that
 /// are not planar, have no area, or whose edges cross.
-void triangulate_facets(std::span<const PolygonSoup> soups, const PointMap& map, Draft& draft,
+void triangulate_facets(std::span<const PolygonSoup> soups, const PointMap& map, ComplexDraft& draft,
                         Faults& faults);
 
 /// Counts of facets that `triangulate_any_facets` had to change.
@@ -24,6 +24,7 @@ struct BentFacets {
 
 /// Cuts facets into triangles without reporting faults. Cuts a polygon that is not planar in its best-fitting
 /// plane or, if its edges cross there, into a fan from one of its corners. Leaves out a polygon without area.
-BentFacets triangulate_any_facets(std::span<const PolygonSoup> soups, const PointMap& map, Draft& draft);
+BentFacets triangulate_any_facets(std::span<const PolygonSoup> soups, const PointMap& map,
+                                  ComplexDraft& draft);
 
 }  // namespace collarmesh::facets

@@ -17,7 +17,7 @@ constexpr double foldable_height = 2;
 // faces of a body smaller than the tolerance stay distinct.
 constexpr double share_of_height = 0.1;
 
-double longest_side(const Draft& draft, Index t) {
+double longest_side(const ComplexDraft& draft, Index t) {
   return std::max({distance(draft.corner(t, 0), draft.corner(t, 1)),
                    distance(draft.corner(t, 1), draft.corner(t, 2)),
                    distance(draft.corner(t, 2), draft.corner(t, 0))});
@@ -25,7 +25,7 @@ double longest_side(const Draft& draft, Index t) {
 
 class ClusterFinder {
  public:
-  ClusterFinder(const Draft& draft, const EdgeTable& edges, ClusterBorder border)
+  ClusterFinder(const ComplexDraft& draft, const EdgeTable& edges, ClusterBorder border)
       : draft_(draft),
         edges_(edges),
         border_(border),
@@ -129,7 +129,7 @@ class ClusterFinder {
     return predicates::orientation(a, draft_.corner(seed, 1), draft_.corner(seed, 2), p) == 0;
   }
 
-  const Draft& draft_;
+  const ComplexDraft& draft_;
   const EdgeTable& edges_;
   ClusterBorder border_;
   std::vector<double> areas_, heights_;
@@ -140,14 +140,14 @@ class ClusterFinder {
 
 }  // namespace
 
-Vector unit_normal(const Draft& draft, Index triangle) {
+Vector unit_normal(const ComplexDraft& draft, Index triangle) {
   const Vector n = cross(draft.corner(triangle, 1) - draft.corner(triangle, 0),
                          draft.corner(triangle, 2) - draft.corner(triangle, 0));
   const double length = norm(n);
   return length > 0 ? n / length : Vector{};
 }
 
-FlatClusters find_flat_clusters(const Draft& draft, const EdgeTable& edges, ClusterBorder border) {
+FlatClusters find_flat_clusters(const ComplexDraft& draft, const EdgeTable& edges, ClusterBorder border) {
   return ClusterFinder(draft, edges, border).run();
 }
 

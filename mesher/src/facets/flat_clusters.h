@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "facets/draft.h"
+#include "facets/complex_draft.h"
 #include "facets/edges.h"
 
 namespace collarmesh::facets {
@@ -22,10 +22,10 @@ enum class ClusterBorder {
 };
 
 /// Finds the clusters. Cost: O(n log n).
-FlatClusters find_flat_clusters(const Draft& draft, const EdgeTable& edges,
+FlatClusters find_flat_clusters(const ComplexDraft& draft, const EdgeTable& edges,
                                 ClusterBorder border = ClusterBorder::none);
 
 /// Returns the unit normal of a triangle of the draft.
-Vector unit_normal(const Draft& draft, Index triangle);
+Vector unit_normal(const ComplexDraft& draft, Index triangle);
 
 }  // namespace collarmesh::facets

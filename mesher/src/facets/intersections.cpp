@@ -78,7 +78,7 @@ struct Pair {
 
 class IntersectionFinder {
  public:
-  IntersectionFinder(const Draft& draft, const Simplices& simplices)
+  IntersectionFinder(const ComplexDraft& draft, const Simplices& simplices)
       : draft_(draft), boxes_(simplices.boxes_for_pairs()), simplices_(simplices.list()) {}
 
   std::vector<std::pair<Index, Index>> pairs(const std::vector<bool>& settled = {}) const {
@@ -272,19 +272,19 @@ class IntersectionFinder {
     return std::nullopt;
   }
 
-  const Draft& draft_;
+  const ComplexDraft& draft_;
   const BoxTree& boxes_;
   std::span<const Simplex> simplices_;
 };
 
 }  // namespace
 
-std::vector<std::pair<Index, Index>> intersecting_pairs(const Draft& draft, const Simplices& simplices,
+std::vector<std::pair<Index, Index>> intersecting_pairs(const ComplexDraft& draft, const Simplices& simplices,
                                                         const std::vector<bool>& settled) {
   return IntersectionFinder(draft, simplices).pairs(settled);
 }
 
-void find_intersections(const Draft& draft, const Simplices& simplices, Faults& faults) {
+void find_intersections(const ComplexDraft& draft, const Simplices& simplices, Faults& faults) {
   IntersectionFinder(draft, simplices).run(faults);
 }
 

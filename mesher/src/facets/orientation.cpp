@@ -10,7 +10,7 @@ namespace {
 
 class Orienter {
  public:
-  Orienter(Draft& draft, EdgeTable& edges, Faults& faults)
+  Orienter(ComplexDraft& draft, EdgeTable& edges, Faults& faults)
       : draft_(draft), edges_(edges), faults_(faults), turned_(draft.triangles.size(), unvisited) {}
 
   void run() {
@@ -92,7 +92,7 @@ class Orienter {
     }
   }
 
-  Draft& draft_;
+  ComplexDraft& draft_;
   EdgeTable& edges_;
   Faults& faults_;
   std::vector<signed char> turned_;
@@ -101,7 +101,7 @@ class Orienter {
 
 }  // namespace
 
-void orient_components(Draft& draft, EdgeTable& edges, Faults& faults) {
+void orient_components(ComplexDraft& draft, EdgeTable& edges, Faults& faults) {
   Orienter(draft, edges, faults).run();
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "facets/draft.h"
+#include "facets/complex_draft.h"
 #include "facets/edges.h"
 #include "facets/faults.h"
 
@@ -10,6 +10,6 @@ namespace collarmesh::facets {
 /// A component keeps the orientation that turns the fewest triangles. If any had to be turned, its
 /// orientation does not tell inside from outside (Origin::oriented). A component that cannot be oriented is a
 /// fault. The edge table must fit the draft's triangles and is updated.
-void orient_components(Draft& draft, EdgeTable& edges, Faults& faults);
+void orient_components(ComplexDraft& draft, EdgeTable& edges, Faults& faults);
 
 }  // namespace collarmesh::facets

@@ -14,7 +14,7 @@ namespace {
 // smaller to its larger point (right-hand rule).
 class Fan {
  public:
-  Fan(const Draft& draft, const EdgeTable& edges, Index edge)
+  Fan(const ComplexDraft& draft, const EdgeTable& edges, Index edge)
       : draft_(draft),
         a_(draft.points[edges.ends(edge)[0]]),
         b_(draft.points[edges.ends(edge)[1]]),
@@ -42,19 +42,19 @@ class Fan {
     return o != 0 ? o > 0 : s < t;
   }
 
-  const Draft& draft_;
+  const ComplexDraft& draft_;
   Point a_, b_, reference_;
   std::vector<Index> sides_;
 };
 
 // Returns the side of the triangle that faces larger (or smaller) angles about the edge.
-Index side_towards(const Draft& draft, Index side, bool larger) {
+Index side_towards(const ComplexDraft& draft, Index side, bool larger) {
   return ascending(draft.triangles, side) == larger ? front_side(side / 3) : back_side(side / 3);
 }
 
 }  // namespace
 
-DisjointSets find_shells(const Draft& draft, const EdgeTable& edges) {
+DisjointSets find_shells(const ComplexDraft& draft, const EdgeTable& edges) {
   DisjointSets shells(2 * draft.triangles.size() + 1);
   const auto join = [&](Index side, Index next) {
     shells.unite(side_towards(draft, side, true), side_towards(draft, next, false));

@@ -5,7 +5,7 @@
 
 #include "common/box_tree.h"
 #include "common/disjoint_sets.h"
-#include "facets/draft.h"
+#include "facets/complex_draft.h"
 #include "facets/edges.h"
 
 namespace collarmesh::facets {
@@ -14,13 +14,13 @@ namespace collarmesh::facets {
 /// meet there, around the border if there is only one triangle. The resulting sets are the shells of the
 /// complex. Their elements are the sides 2 t and 2 t + 1, and one element for the space far outside.
 /// Precondition: triangles meet in common edges and corners only.
-DisjointSets find_shells(const Draft& draft, const EdgeTable& edges);
+DisjointSets find_shells(const ComplexDraft& draft, const EdgeTable& edges);
 
 /// A search for the places where straight lines meet the triangles.
 class LineCaster {
  public:
   /// Keeps references to both. The triangles are the first items of the tree, in their order.
-  LineCaster(const Draft& draft, const BoxTree& boxes) : draft_(draft), boxes_(boxes) {}
+  LineCaster(const ComplexDraft& draft, const BoxTree& boxes) : draft_(draft), boxes_(boxes) {}
 
   struct Crossing {
     Index triangle;
@@ -36,7 +36,7 @@ class LineCaster {
   enum class Meeting { none, forward, backward, degenerate };
   Meeting meet(Index triangle, const Point& p, const Point& q) const;
 
-  const Draft& draft_;
+  const ComplexDraft& draft_;
   const BoxTree& boxes_;
 };
 

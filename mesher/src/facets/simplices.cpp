@@ -10,7 +10,7 @@ namespace collarmesh::facets {
 
 namespace {
 
-std::vector<Simplex> collect(const Draft& draft, const EdgeTable& edges) {
+std::vector<Simplex> collect(const ComplexDraft& draft, const EdgeTable& edges) {
   std::vector<Simplex> simplices;
   simplices.reserve(draft.triangles.size());
   for (const Corners& t : draft.triangles) simplices.push_back({t, 3});
@@ -23,7 +23,7 @@ std::vector<Simplex> collect(const Draft& draft, const EdgeTable& edges) {
   return simplices;
 }
 
-std::vector<Box> boxes_of(const Draft& draft, std::span<const Simplex> simplices,
+std::vector<Box> boxes_of(const ComplexDraft& draft, std::span<const Simplex> simplices,
                           const BoxFrame& frame = {}) {
   std::vector<Box> boxes(simplices.size());
   for (std::size_t i = 0; i < boxes.size(); ++i)
@@ -31,7 +31,7 @@ std::vector<Box> boxes_of(const Draft& draft, std::span<const Simplex> simplices
   return boxes;
 }
 
-std::vector<Index> facets_of(const Draft& draft, std::span<const Simplex> simplices) {
+std::vector<Index> facets_of(const ComplexDraft& draft, std::span<const Simplex> simplices) {
   std::vector<Index> first_facet{0};  // for each soup, the number of its first facet among all facets
   for (const Origin& origin : draft.origins) {
     if (origin.soup + 1 >= first_facet.size()) first_facet.resize(origin.soup + 2, 0);
@@ -47,7 +47,7 @@ std::vector<Index> facets_of(const Draft& draft, std::span<const Simplex> simpli
 
 }  // namespace
 
-Simplices::Simplices(const Draft& draft, const EdgeTable& edges)
+Simplices::Simplices(const ComplexDraft& draft, const EdgeTable& edges)
     : list_(collect(draft, edges)), boxes_(boxes_of(draft, list_), facets_of(draft, list_)) {
   if (const BoxFrame frame(draft.points, draft.triangles); frame.turned())
     turned_.emplace(boxes_of(draft, list_, frame), facets_of(draft, list_));

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/box_tree.h"
-#include "facets/draft.h"
+#include "facets/complex_draft.h"
 #include "facets/edges.h"
 
 namespace collarmesh::facets {
@@ -21,7 +21,7 @@ struct Simplex {
 /// not sides of triangles, then its loose points.
 class Simplices {
  public:
-  Simplices(const Draft& draft, const EdgeTable& edges);
+  Simplices(const ComplexDraft& draft, const EdgeTable& edges);
 
   std::span<const Simplex> list() const { return list_; }
   /// Returns the tree of their boxes. The triangles of one facet form a group, because they come from one

@@ -139,7 +139,7 @@ bool is_complex(const PolygonSoup& soup) {
          extension == ".smesh";
 }
 
-PointMap weld_points(std::span<const PolygonSoup> soups, double distance_limit, Draft& draft,
+PointMap weld_points(std::span<const PolygonSoup> soups, double distance_limit, ComplexDraft& draft,
                      Faults& faults) {
   PointMap map;
   const UsedPoints all = collect(soups, map, faults);

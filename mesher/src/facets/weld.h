@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "facets/draft.h"
+#include "facets/complex_draft.h"
 #include "facets/faults.h"
 
 namespace collarmesh::facets {
@@ -22,6 +22,7 @@ bool is_complex(const PolygonSoup& soup);
 /// diagonal of all); chains of close points merge, too. Merged points get the place of the first of them.
 /// Sets the draft's bounds and deviation. Points that are not finite and corners out of range become faults.
 /// Cost: O(n log n) unless many points lie within `distance` of one plane.
-PointMap weld_points(std::span<const PolygonSoup> soups, double distance, Draft& draft, Faults& faults);
+PointMap weld_points(std::span<const PolygonSoup> soups, double distance, ComplexDraft& draft,
+                     Faults& faults);
 
 }  // namespace collarmesh::facets

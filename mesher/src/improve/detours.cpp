@@ -21,7 +21,7 @@ constexpr unsigned most_detours = 30;
 // taken.
 constexpr std::size_t first_trials = 2000, trials_per_detour = 200;
 // Most proposals for tets with angles near 180 degrees, each of which costs as much as several trials.
-constexpr std::size_t most_blunt = 2000;
+constexpr std::size_t most_obtuse = 2000;
 constexpr double least_detour_gain = 1e-3, rounding = 1e-9;
 
 // Compares two sorted lists from the worst entry up. Returns whether the first differing entry is larger in
@@ -38,17 +38,17 @@ bool is_better(const std::vector<double>& now, const std::vector<double>& before
 }  // namespace
 
 bool Detours::exhausted() const {
-  return blunt_ >= most_blunt ||
+  return obtuse_ >= most_obtuse ||
          trials_ >= std::min(most_trials_, first_trials + trials_per_detour * taken());
 }
 
 Change Detours::propose(Index tet) {
-  if (remedies_.is_blunt(tet)) ++blunt_;
-  return remedies_.propose(operations_, tet);
+  if (chooser_.is_too_obtuse(tet)) ++obtuse_;
+  return chooser_.propose(operations_, tet);
 }
 
 std::size_t Detours::take_all(std::vector<Index> tets, const std::function<bool()>& stopped) {
-  assert(edited_.is_prepared() && remedies_.has_forgotten());
+  assert(edited_.is_prepared() && chooser_.has_forgotten());
   bool any = true;
   while (any && !ended_) {
     any = false;
@@ -60,9 +60,9 @@ std::size_t Detours::take_all(std::vector<Index> tets, const std::function<bool(
 
 // Tries every tet once, worst first. Returns whether any detour was taken.
 bool Detours::take_round(std::vector<Index>& tets, Effort effort, const std::function<bool()>& stopped) {
-  const auto is_good = [this](Index t) { return remedies_.poor_quality(t) == INFINITY; };
+  const auto is_good = [this](Index t) { return chooser_.poor_quality(t) == INFINITY; };
   std::erase_if(tets, is_good);
-  sort_uniquely(tets, [this](Index t) { return std::pair(remedies_.poor_quality(t), t); });
+  sort_uniquely(tets, [this](Index t) { return std::pair(chooser_.poor_quality(t), t); });
   Asked& asked = asked_[static_cast<unsigned>(effort)];
   const std::uint32_t before = taken();
   const std::size_t count = tets.size();
@@ -71,7 +71,7 @@ bool Detours::take_round(std::vector<Index>& tets, Effort effort, const std::fun
     if (is_good(tet) || !is_new_to(tet, asked)) continue;
     asked.resize(std::max<std::size_t>(asked.size(), complex().size()), 0);
     asked[tet] = changes_.now() + 1;
-    if (!remedies_.may_change_vertices(tet)) continue;
+    if (!chooser_.may_change_vertices(tet)) continue;
     ended_ = exhausted() || stopped();
     if (ended_) break;
     if (help(tet, effort)) note_changes(tets);
@@ -106,14 +106,14 @@ bool Detours::help(Index tet, Effort effort) {
     take(trial);
     return true;
   }
-  const auto is_perfect = [this](const Result& r) { return r.worst >= remedies_.wanted() && !r.more_thin; };
+  const auto is_perfect = [this](const Result& r) { return r.worst >= chooser_.wanted() && !r.more_thin; };
   Result best;
   FirstStep step{};
   for (const Index place : places(tet, effort)) {
-    const bool may_change_vertices = place == tet || remedies_.may_change_vertices(place);
+    const bool may_change_vertices = place == tet || chooser_.may_change_vertices(place);
     for (unsigned edge = 0; edge < cell_shapes::corner_pairs.size(); ++edge)
-      for (const Operation operation : {Operation::contraction, Operation::contraction_turned,
-                                        Operation::insertion, Operation::removal}) {
+      for (const Operation operation :
+           {Operation::collapse, Operation::collapse_turned, Operation::insertion, Operation::removal}) {
         if (operation != Operation::removal && !may_change_vertices) continue;
         const FirstStep tried{place, edge, operation};
         const Result found = attempt(tried, is_perfect);
@@ -129,7 +129,7 @@ bool Detours::help(Index tet, Effort effort) {
 // Returns whether to accept a result. Except as a last resort, more thin tets are accepted only if all other
 // tets are good afterwards.
 bool Detours::is_worth_it(const Result& result, Effort effort) const {
-  return effort == Effort::last_resort || !result.more_thin || result.worst >= remedies_.wanted();
+  return effort == Effort::last_resort || !result.more_thin || result.worst >= chooser_.wanted();
 }
 
 std::vector<Index> Detours::places(Index tet, Effort effort) const {
@@ -158,8 +158,8 @@ Change Detours::first_step(const FirstStep& step) {
   Change change;
   const double above = least_quality_on_way;
   switch (step.operation) {
-    case Operation::contraction: operations_.contract_edge(a, b, change, above); break;
-    case Operation::contraction_turned: operations_.contract_edge(b, a, change, above); break;
+    case Operation::collapse: operations_.collapse_edge(a, b, change, above); break;
+    case Operation::collapse_turned: operations_.collapse_edge(b, a, change, above); break;
     case Operation::insertion: operations_.split_edge_anyhow(a, b, above, change); break;
     case Operation::removal: operations_.remove_edge(step.tet, i, j, change, above); break;
   }
@@ -192,19 +192,19 @@ void Detours::take(Trial& trial) {
 
 void Detours::apply(Trial& trial, Change change) {
   const auto see_before = [this](Index tet) {
-    before_.push_back(std::min(remedies_.wanted(), remedies_.quality(tet)));
-    thin_before_ += remedies_.is_thin(tet) ? 1 : 0;
+    before_.push_back(std::min(chooser_.wanted(), chooser_.quality(tet)));
+    thin_before_ += chooser_.is_thin(tet) ? 1 : 0;
   };
   for (const Index t : trial.apply(std::move(change), see_before))
     if (!contains(to_improve_, t)) to_improve_.push_back(t);
 }
 
 void Detours::improve_changed(Trial& trial) {
-  const auto key = [this](Index t) { return std::pair(remedies_.poor_quality(t), t); };
+  const auto key = [this](Index t) { return std::pair(chooser_.poor_quality(t), t); };
   for (unsigned step = 0; step < most_detours && !to_improve_.empty(); ++step) {
     const auto worst = std::ranges::min_element(to_improve_, {}, key);
     const Index tet = *worst;
-    if (remedies_.poor_quality(tet) == INFINITY) return;
+    if (chooser_.poor_quality(tet) == INFINITY) return;
     *worst = to_improve_.back();
     to_improve_.pop_back();
     Change change = propose(tet);
@@ -217,13 +217,13 @@ Detours::Result Detours::result(const Trial& trial) const {
   std::size_t thin = 0;
   for (const Index t : trial.changed()) {
     if (!complex()[t].alive) continue;
-    now.push_back(std::min(remedies_.wanted(), remedies_.quality(t)));
-    thin += remedies_.is_thin(t) ? 1 : 0;
+    now.push_back(std::min(chooser_.wanted(), chooser_.quality(t)));
+    thin += chooser_.is_thin(t) ? 1 : 0;
   }
   std::ranges::sort(before);
   std::ranges::sort(now);
-  return {is_better(now, before, remedies_.wanted()), false, thin > thin_before_,
-          now.empty() ? remedies_.wanted() : now.front()};
+  return {is_better(now, before, chooser_.wanted()), false, thin > thin_before_,
+          now.empty() ? chooser_.wanted() : now.front()};
 }
 
 }  // namespace collarmesh::remeshing::improvement

@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "improve/remedies.h"
+#include "improve/operation_chooser.h"
 #include "remesh/change_times.h"
 
 namespace collarmesh::remeshing::improvement {
@@ -15,13 +15,13 @@ namespace collarmesh::remeshing::improvement {
 /// tet or beside it, need not improve any tet; the tets that it makes are then improved for some steps. The
 /// result is kept if it is better than the mesh before, else undone. Meshes are compared from the worst tet
 /// up, so the mesh never returns to an earlier state.
-/// Uses one thread. Precondition: `Remedies::forget` was called, so that a repeated trial has the same
-/// result.
+/// Uses one thread. Precondition: `OperationChooser::forget` was called, so that a repeated trial has the
+/// same result.
 class Detours {
  public:
   /// Keeps all by reference. Starts no detour after `most_trials` operations, but completes the current tet.
-  Detours(EditableMesh& edited, Remedies& remedies, Operations& operations, std::size_t most_trials)
-      : edited_(edited), remedies_(remedies), operations_(operations), most_trials_(most_trials) {}
+  Detours(EditableMesh& edited, OperationChooser& chooser, Operations& operations, std::size_t most_trials)
+      : edited_(edited), chooser_(chooser), operations_(operations), most_trials_(most_trials) {}
 
   /// Takes detours for these tets and, where the number of vertices may change, for poor tets that detours
   /// leave. Takes the worst tet first; tries operations at the tet itself, then beside it; tries again after
@@ -33,7 +33,7 @@ class Detours {
   std::size_t trials() const { return trials_; }
 
  private:
-  enum class Operation : std::uint8_t { contraction, contraction_turned, insertion, removal };
+  enum class Operation : std::uint8_t { collapse, collapse_turned, insertion, removal };
   /// The beginning of a detour: an operation at an edge of a tet.
   struct FirstStep {
     Index tet;
@@ -70,10 +70,10 @@ class Detours {
   const TetComplex& complex() const { return edited_.complex; }
 
   EditableMesh& edited_;
-  Remedies& remedies_;
+  OperationChooser& chooser_;
   Operations& operations_;
   std::size_t most_trials_, trials_ = 0;
-  std::size_t blunt_ = 0;                                // number of proposals for blunt tets
+  std::size_t obtuse_ = 0;                               // number of proposals for tets that are too obtuse
   ChangeTimes changes_{complex().mesh().points.size()};  // the time is the number of detours taken
   bool ended_ = false;                                   // no trials remain, or the caller stopped it
   std::array<Asked, 3> asked_;                           // by Effort

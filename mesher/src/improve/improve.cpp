@@ -16,7 +16,7 @@
 #include "common/thread_limit.h"
 #include "improve/detours.h"
 #include "improve/improve_edited.h"
-#include "improve/remedies.h"
+#include "improve/operation_chooser.h"
 #include "remesh/operations.h"
 #include "remesh/ordered_speculation.h"
 
@@ -49,7 +49,7 @@ class Improvement {
         bounds_(edited.tet_bounds(options.bounds)),
         rule_(options.bounds.radius_edge, options.bounds.thin_angle > 0 ? &bounds_.thin : nullptr,
               options.bounds.thin_angle > 0 ? &bounds_.cells : nullptr),
-        remedies_(edited, rule_, options, thoroughly),
+        chooser_(edited, rule_, options, thoroughly),
         speculation_([this] { return Operations(edited_, rule_); }),
         execution_(execution),
         detours_(thoroughly && options.move_vertices),
@@ -113,19 +113,19 @@ class Improvement {
   }
 
   void add_if_poor(Index tet, std::vector<Item>& found) const {
-    const double q = remedies_.poor_quality(tet);
+    const double q = chooser_.poor_quality(tet);
     if (q < INFINITY) found.push_back({q, tet, complex()[tet].generation});
   }
 
   void queue(Index tet) {
-    const double q = remedies_.poor_quality(tet);
+    const double q = chooser_.poor_quality(tet);
     if (q < INFINITY) queue_.push({q, tet, complex()[tet].generation});
   }
 
   bool is_up_to_date(const Item& item) const {
     const auto& tet = complex()[item.tet];
     return tet.alive && tet.generation == item.generation &&
-           remedies_.quality(item.tet) == item.quality;  // if not, a vertex has moved since
+           chooser_.quality(item.tet) == item.quality;  // if not, a vertex has moved since
   }
 
   void work_off() {
@@ -146,7 +146,7 @@ class Improvement {
       }
       proposals_.resize(batch_.size());
       speculation_.propose_all(batch_, proposals_, [&](Operations& own, const Item& item, Change& change) {
-        change = is_known_to_fail(item.tet) ? Change{} : remedies_.propose(own, item.tet);
+        change = is_known_to_fail(item.tet) ? Change{} : chooser_.propose(own, item.tet);
       });
       changes_.advance();
       changed_in_.resize(complex().size(), 0);
@@ -168,7 +168,7 @@ class Improvement {
   }
 
   void nothing_helps(Index tet) {
-    remedies_.nothing_helps(tet);
+    chooser_.nothing_helps(tet);
     failed_in_.resize(complex().size(), 0);
     failed_in_[tet] = changes_.now();
   }
@@ -198,13 +198,13 @@ class Improvement {
     assert(std::ranges::all_of(poor_, [this](const Item& item) { return is_up_to_date(item); }));
     std::vector<Index> poor;
     for (const Item& item : poor_) poor.push_back(item.tet);
-    const auto may_change = [this](Index t) { return remedies_.may_change_vertices(t); };
+    const auto may_change = [this](Index t) { return chooser_.may_change_vertices(t); };
     const auto count = static_cast<std::size_t>(std::ranges::count_if(poor, may_change));
     if (count == 0 || count > few + complex().size() / tets_per_few) return false;
     edited_.prepare();
     rule_.set_least_gain(least_gain_in_detours);
-    remedies_.forget();
-    Detours detours(edited_, remedies_, speculation_.own(), trials + complex().size() / tets_per_trial);
+    chooser_.forget();
+    Detours detours(edited_, chooser_, speculation_.own(), trials + complex().size() / tets_per_trial);
     report_.detours = detours.take_all(std::move(poor), [this] { return report_.cancelled = stopped(); });
     return true;
   }
@@ -224,7 +224,7 @@ class Improvement {
       case Change::Kind::edge_removal: ++report_.edge_removals; break;
       case Change::Kind::boundary_flip: ++report_.boundary_flips; break;
       case Change::Kind::move: ++report_.moved_vertices; break;
-      case Change::Kind::contraction:
+      case Change::Kind::collapse:
         if (!edited_.curve_can_spare(change)) return;
         ++report_.contracted_edges;
         break;
@@ -239,7 +239,7 @@ class Improvement {
       changed_in_[t] = changes_.now();
       if (t < failed_in_.size()) failed_in_[t] = 0;
       note_change_at(t);
-      remedies_.changed(t);
+      chooser_.changed(t);
       queue(t);
     }
   }
@@ -247,7 +247,7 @@ class Improvement {
   EditableMesh& edited_;
   TetBounds bounds_;
   SliverRule rule_;
-  Remedies remedies_;
+  OperationChooser chooser_;
   ChangeTimes changes_{complex().mesh().points.size()};  // the time is the number of the batch
   OrderedSpeculation<Operations> speculation_;
   const Execution& execution_;

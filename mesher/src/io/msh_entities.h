@@ -17,7 +17,7 @@ struct MshEntity {
   Tag tag = 0;
   int physical = 0;  ///< number of the physical group; 0: none
   Box box;
-  std::vector<int> boundary;  ///< of a volume: surfaces, negative where they point inwards
+  std::vector<int> boundary;  ///< a volume's surfaces, negative where they point inwards
 };
 
 /// Numbers of physical groups by dimension and tag.

@@ -14,7 +14,7 @@ namespace collarmesh::io {
 /// The part of a .msh file between $NAME and $EndNAME.
 struct MshSection {
   std::string_view name, body;
-  std::size_t first_line = 1;  ///< of the section's body
+  std::size_t first_line = 1;  ///< number of the first line of `body`
   std::size_t first_byte = 0;
 };
 

@@ -83,7 +83,7 @@ struct VtkPiece {
   using Arrays = std::map<std::string, std::vector<std::int64_t>, std::less<>>;
   std::vector<Point> points;
   std::vector<std::int64_t> connectivity, ends, types;
-  Arrays point_data, cell_data;  ///< those of `vtk_point_arrays` and `vtk_cell_arrays` that exist
+  Arrays point_data, cell_data;  ///< the existing arrays of `vtk_point_arrays` and `vtk_cell_arrays`
   std::string names;             ///< names of groups, as in names_text.h
 };
 

@@ -156,9 +156,9 @@ void Core::fit_tets(Heights& heights, const std::vector<std::uint8_t>& levels) {
 /// Returns the smaller ratio of the sines of a tet's extreme angles to those of their bounds: at least 1 if
 /// it keeps both, -1 if it is flat or inverted.
 double Core::margin(const remeshing::Corners& p, Index tet) const {
-  const auto [sharp, blunt] =
+  const auto [of_smallest, of_largest] =
       thin_->squared_margins(remeshing::extreme_cosines(p), p, piece_->complex[tet].corners);
-  return blunt < 0 ? -1 : std::sqrt(std::min(sharp, blunt));
+  return of_largest < 0 ? -1 : std::sqrt(std::min(of_smallest, of_largest));
 }
 
 /// Moves the front step by step, and improves tets in between, as long as it advances.

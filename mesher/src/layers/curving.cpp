@@ -25,10 +25,11 @@ constexpr std::array<EdgePlaces, 3> triangle_edges{{{0, 1}, {1, 2}, {2, 0}}};
 constexpr double shrinking = 0.5;
 constexpr unsigned most_shrinkings = 5;
 
-class Curving {
+/// The placement of mid-edge nodes in layers and on the walls below them.
+class LayerCurving {
  public:
-  Curving(TetMesh& mesh, const Plc& plc, const Bulges& bulges, const PlacesInLayers& places,
-          const SecondOrderOptions& options, const Execution& execution)
+  LayerCurving(TetMesh& mesh, const Plc& plc, const Bulges& bulges, const PlacesInLayers& places,
+               const SecondOrderOptions& options, const Execution& execution)
       : mesh_(mesh), plc_(plc), bulges_(bulges), places_(places), options_(options), execution_(execution) {}
 
   CurvedLayers run(bool may_move_walls) {
@@ -363,7 +364,7 @@ void straighten(TetMesh& mesh) {
 
 CurvedLayers curve(TetMesh& mesh, const Plc& plc, const Bulges& bulges, const PlacesInLayers& places,
                    const SecondOrderOptions& options, const Execution& execution, bool may_move_walls) {
-  return Curving(mesh, plc, bulges, places, options, execution).run(may_move_walls);
+  return LayerCurving(mesh, plc, bulges, places, options, execution).run(may_move_walls);
 }
 
 }  // namespace collarmesh::layering

@@ -9,7 +9,7 @@ namespace collarmesh::layering {
 
 struct Direction {
   Vector direction;     ///< unit vector
-  double least_cosine;  ///< of the angles between it and the normals of walls; positive
+  double least_cosine;  ///< least cosine of the angles between it and the normals of walls; positive
 };
 
 /// The search for the direction that is as steep as possible above all walls at a node, within the planes and

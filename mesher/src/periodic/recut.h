@@ -56,7 +56,7 @@ class Recut {
     std::unordered_map<Index, Index> image_of;              // by vertex of the group whose tets move: its
                                                             // image on the other group
     std::unordered_map<Index, Index> on_other;              // inverse of `image_of`
-    std::array<std::map<Index, Index>, 3> image, original;  // of features, by dimension
+    std::array<std::map<Index, Index>, 3> image, original;  // maps of features, by dimension
   };
   struct Place {
     Index vertex;

@@ -104,7 +104,7 @@ class PatchNodes {
 
   const TetMesh& mesh_;
   std::unordered_map<Index, Index> numbers_;    // by node of the mesh
-  std::vector<Index> nodes_;                    // of the mesh
+  std::vector<Index> nodes_;                    // nodes of the mesh
   std::vector<std::vector<Index>> neighbours_;  // this and the following: by number in `nodes_`
   std::vector<double> lengths_;
   std::vector<bool> covered_;

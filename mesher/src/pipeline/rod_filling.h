@@ -25,7 +25,7 @@ struct RodFilling {
     return found != origins.end() ? &found->second : nullptr;
   }
 
-  std::vector<Index> tets, faces;  ///< those of the refined mesh that the cavity takes
+  std::vector<Index> tets, faces;  ///< elements of the refined mesh that the cavity takes
   TetMesh gap;
   /// By patch of the gap: a planar patch of the whole complex, or none for a triangle that exists already.
   std::vector<Index> hosts;

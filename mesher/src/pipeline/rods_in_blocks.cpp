@@ -269,8 +269,8 @@ void refine_without(MeshJob& job, const ComplexWithoutRods& without, const std::
   job.neighbours = KnownNeighbours();  // they know other features
 }
 
-/// Returns whether all tets of a rod and its sheath keep the bounds on the angles of thin tets. Those between
-/// rings that are near each other, as in a bend, and layers that are far apart miss them.
+/// Returns whether all tets of a rod and its sheath keep the bounds on the angles of thin tets. Tets
+/// between rings that are near each other, as in a bend, and layers that are far apart miss them.
 bool keeps_angles(const TetMesh& mesh, double thin_angle) {
   return std::ranges::all_of(mesh.tets, [&](const std::array<Index, 4>& tet) {
     const auto& p = mesh.points;

@@ -64,7 +64,7 @@ std::vector<Point> points_near(const Plc& plc, const Point& place, double radius
 /// lost no part.
 void require_change(const SoupPipelineResult& before, const SoupPipelineResult& other,
                     const std::optional<Point>& place) {
-  constexpr double near = 0.02;  // of the diagonal
+  constexpr double near = 0.02;  // relative to the diagonal
   require_kept(before, other);
   if (!place) return;
   const double radius = near * before.plc.bounds.diagonal();

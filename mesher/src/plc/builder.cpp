@@ -30,7 +30,7 @@ namespace {
 using namespace facets;
 using namespace plc;
 
-void name_soups(std::span<const PolygonSoup> soups, Draft& draft) {
+void name_soups(std::span<const PolygonSoup> soups, ComplexDraft& draft) {
   for (Index s = 0; s < soups.size(); ++s) {
     draft.soup_names.push_back(soups[s].name.empty() ? fmt::format("input {}", s + 1) : soups[s].name);
     draft.soup_is_complex.push_back(is_complex(soups[s]));
@@ -39,7 +39,7 @@ void name_soups(std::span<const PolygonSoup> soups, Draft& draft) {
 }
 
 // Adds the unused points of complexes as vertices.
-void add_unused_points(const PointMap& map, Draft& draft) {
+void add_unused_points(const PointMap& map, ComplexDraft& draft) {
   std::vector<bool> used(draft.points.size(), false);
   for (const Corners& t : draft.triangles)
     for (const Index p : t) used[p] = true;
@@ -50,19 +50,19 @@ void add_unused_points(const PointMap& map, Draft& draft) {
         if (!used[p]) draft.loose_points.push_back(p);
 }
 
-void add_named_vertices(std::span<const PolygonSoup> soups, const PointMap& map, Draft& draft) {
+void add_named_vertices(std::span<const PolygonSoup> soups, const PointMap& map, ComplexDraft& draft) {
   for (Index s = 0; s < soups.size(); ++s)
     for (const Index v : soups[s].vertices) draft.loose_points.push_back(map.merged[s][v]);
 }
 
-void require_content(const Draft& draft, Faults& faults) {
+void require_content(const ComplexDraft& draft, Faults& faults) {
   if (draft.triangles.empty() && draft.segments.empty() && draft.loose_points.empty())
     faults.add(PlcFault::Kind::empty,
                "The input holds no facet with an area; check that these are the right files.", {}, {});
 }
 
 // Adds a fault that tells why the facets enclose no region.
-void report_nothing_solid(const Draft& draft, std::span<const PolygonSoup> soups, Faults& faults) {
+void report_nothing_solid(const ComplexDraft& draft, std::span<const PolygonSoup> soups, Faults& faults) {
   for (Index s = 0; s < soups.size(); ++s)
     if (!soups[s].hole_points.empty()) {
       const Point& hole = soups[s].hole_points.front();
@@ -90,7 +90,7 @@ void report_nothing_solid(const Draft& draft, std::span<const PolygonSoup> soups
       {}, at);
 }
 
-void require_region(const Draft& draft, const EdgeTable& edges, const Regions& regions,
+void require_region(const ComplexDraft& draft, const EdgeTable& edges, const Regions& regions,
                     std::span<const PolygonSoup> soups, Faults& faults) {
   if (regions.list.size() > 1) return;
   std::size_t count = 0;
@@ -114,8 +114,8 @@ void require_region(const Draft& draft, const EdgeTable& edges, const Regions& r
 
 // Adds the patches to the complex, each with its triangles in one range. Turns a patch around if a region is
 // in front of it and the outside behind it.
-void add_patches(Draft& draft, const Regions& regions, const std::vector<Index>& patch_of, Index patch_count,
-                 Plc& plc) {
+void add_patches(ComplexDraft& draft, const Regions& regions, const std::vector<Index>& patch_of,
+                 Index patch_count, Plc& plc) {
   std::vector<std::vector<Index>> triangles(patch_count);
   for (Index t = 0; t < draft.triangles.size(); ++t) triangles[patch_of[t]].push_back(t);
   for (Index p = 0; p < patch_count; ++p) {
@@ -143,7 +143,7 @@ void add_patches(Draft& draft, const Regions& regions, const std::vector<Index>&
 
 // Links patches to their curves and vertices. Precondition: curves have their patches and vertices their
 // curves.
-void link_patches(const Draft& draft, Plc& plc) {
+void link_patches(const ComplexDraft& draft, Plc& plc) {
   for (Index c = 0; c < plc.curves.size(); ++c)
     for (const Index p : plc.curves[c].patches) plc.patches[p].curves.push_back(c);
   std::vector<Index> vertex_at(draft.points.size(), none);
@@ -187,7 +187,7 @@ void warn_of_patches_outside(Plc& plc) {
 Plc build_plc(std::span<const PolygonSoup> soups, const PlcOptions& options) {
   validate({{.complex = options}});
   if (options.domain == DomainShape::box) return build_plc(with_box(soups, options), enclosed(options));
-  Draft draft;
+  ComplexDraft draft;
   Faults faults;
   name_soups(soups, draft);
   const PointMap map = weld_points(soups, options.weld, draft, faults);
@@ -199,13 +199,13 @@ Plc build_plc(std::span<const PolygonSoup> soups, const PlcOptions& options) {
   add_unused_points(map, draft);
   add_named_vertices(soups, map, draft);
   remove_collinear_triangles(draft);
-  remove_twins_within_soups(draft);
+  remove_duplicates_within_soups(draft);
   require_content(draft, faults);
   EdgeTable edges(draft.triangles, draft.points.size());
   orient_components(draft, edges, faults);
   if (soups.size() > 1) {
     unify_interfaces(draft);
-    merge_twins_across_soups(draft);
+    merge_duplicates_across_soups(draft);
     edges = EdgeTable(draft.triangles, draft.points.size());
   }
   const Simplices simplices(draft, edges);

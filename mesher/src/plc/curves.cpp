@@ -16,7 +16,7 @@ namespace {
 
 class CurveFinder {
  public:
-  CurveFinder(Draft& draft, const EdgeTable& edges, const std::vector<FeatureSegment>& segments,
+  CurveFinder(ComplexDraft& draft, const EdgeTable& edges, const std::vector<FeatureSegment>& segments,
               const std::vector<Index>& patch_of, const std::vector<Index>& folds, double feature_angle,
               Plc& plc)
       : draft_(draft),
@@ -227,7 +227,7 @@ class CurveFinder {
         plc_.vertices[v].curves.push_back(c);
   }
 
-  Draft& draft_;
+  ComplexDraft& draft_;
   const EdgeTable& edges_;
   const std::vector<FeatureSegment>& segments_;
   Plc& plc_;
@@ -243,7 +243,7 @@ class CurveFinder {
 
 }  // namespace
 
-void find_curves(Draft& draft, const EdgeTable& edges, const std::vector<FeatureSegment>& segments,
+void find_curves(ComplexDraft& draft, const EdgeTable& edges, const std::vector<FeatureSegment>& segments,
                  const std::vector<Index>& patch_of, const std::vector<Index>& folds, double feature_angle,
                  Plc& plc) {
   CurveFinder(draft, edges, segments, patch_of, folds, feature_angle, plc).run();

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "collarmesh/plc.h"
-#include "facets/draft.h"
+#include "facets/complex_draft.h"
 #include "facets/edges.h"
 #include "plc/features.h"
 
@@ -14,7 +14,7 @@ namespace collarmesh::plc {
 /// exactly two segments meet there, which bound the same patches, have the same tag, and turn by less than
 /// the feature angle (degrees; 0: only within the planar tolerance of a straight line), and if the surface
 /// there is one fan of triangles. The points in `folds` are vertices, too.
-void find_curves(facets::Draft& draft, const facets::EdgeTable& edges,
+void find_curves(facets::ComplexDraft& draft, const facets::EdgeTable& edges,
                  const std::vector<FeatureSegment>& segments, const std::vector<Index>& patch_of,
                  const std::vector<Index>& folds, double feature_angle, Plc& plc);
 

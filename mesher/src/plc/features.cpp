@@ -14,7 +14,8 @@ namespace {
 
 class SegmentTest {
  public:
-  SegmentTest(const Draft& draft, const EdgeTable& edges, const FlatClusters& clusters, double feature_angle)
+  SegmentTest(const ComplexDraft& draft, const EdgeTable& edges, const FlatClusters& clusters,
+              double feature_angle)
       : draft_(draft),
         edges_(edges),
         clusters_(clusters),
@@ -35,7 +36,7 @@ class SegmentTest {
   }
 
  private:
-  const Draft& draft_;
+  const ComplexDraft& draft_;
   const EdgeTable& edges_;
   const FlatClusters& clusters_;
   bool every_fold_;
@@ -49,7 +50,7 @@ struct Extent {
 };
 
 // Returns the corners of these triangles, with duplicates.
-std::vector<Index> corners_of(const Draft& draft, const std::vector<Index>& triangles) {
+std::vector<Index> corners_of(const ComplexDraft& draft, const std::vector<Index>& triangles) {
   std::vector<Index> points;
   points.reserve(3 * triangles.size());
   for (const Index t : triangles)
@@ -58,7 +59,7 @@ std::vector<Index> corners_of(const Draft& draft, const std::vector<Index>& tria
 }
 
 // Returns the largest distance of the points from a plane, or the first distance above the limit.
-double deviation_from(const Draft& draft, const std::vector<Index>& points, const Point& origin,
+double deviation_from(const ComplexDraft& draft, const std::vector<Index>& points, const Point& origin,
                       const Vector& normal, double limit) {
   double largest = 0;
   for (const Index p : points) {
@@ -70,7 +71,7 @@ double deviation_from(const Draft& draft, const std::vector<Index>& points, cons
 
 }  // namespace
 
-std::vector<FeatureSegment> find_segments(const Draft& draft, const EdgeTable& edges,
+std::vector<FeatureSegment> find_segments(const ComplexDraft& draft, const EdgeTable& edges,
                                           const FlatClusters& clusters, double feature_angle) {
   std::vector<FeatureSegment> named;
   for (const Segment& s : draft.segments)
@@ -94,8 +95,8 @@ std::vector<FeatureSegment> find_segments(const Draft& draft, const EdgeTable& e
   return segments;
 }
 
-Index find_patches(const Draft& draft, const EdgeTable& edges, const std::vector<FeatureSegment>& segments,
-                   std::vector<Index>& patch_of) {
+Index find_patches(const ComplexDraft& draft, const EdgeTable& edges,
+                   const std::vector<FeatureSegment>& segments, std::vector<Index>& patch_of) {
   std::vector<bool> is_segment(edges.size(), false);
   for (const FeatureSegment& s : segments)
     if (s.edge != none) is_segment[s.edge] = true;
@@ -111,7 +112,7 @@ Index find_patches(const Draft& draft, const EdgeTable& edges, const std::vector
   return count;
 }
 
-void fit_plane(Draft& draft, const std::vector<Index>& triangles, Plc::Patch& patch) {
+void fit_plane(ComplexDraft& draft, const std::vector<Index>& triangles, Plc::Patch& patch) {
   Index largest = triangles[0];
   double largest_area = 0;
   Vector mean{};

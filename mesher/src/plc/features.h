@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "collarmesh/plc.h"
-#include "facets/draft.h"
+#include "facets/complex_draft.h"
 #include "facets/edges.h"
 #include "facets/flat_clusters.h"
 
@@ -20,16 +20,16 @@ struct FeatureSegment {
 /// Finds the segments: edges that the input gives as segments; edges that are not shared by exactly two
 /// triangles; edges between different tags or soups; and edges where a surface without given features turns
 /// by more than the feature angle (degrees).
-std::vector<FeatureSegment> find_segments(const facets::Draft& draft, const facets::EdgeTable& edges,
+std::vector<FeatureSegment> find_segments(const facets::ComplexDraft& draft, const facets::EdgeTable& edges,
                                           const facets::FlatClusters& clusters, double feature_angle);
 
 /// Finds the patch of each triangle: a patch is connected across edges that are not segments. Patches are
 /// numbered by their first triangle. Returns the number of patches.
-Index find_patches(const facets::Draft& draft, const facets::EdgeTable& edges,
+Index find_patches(const facets::ComplexDraft& draft, const facets::EdgeTable& edges,
                    const std::vector<FeatureSegment>& segments, std::vector<Index>& patch_of);
 
 /// Fits a plane to the points of the patch. If all are within the tolerance of it, sets planar, normal and
 /// origin, and raises the draft's deviation.
-void fit_plane(facets::Draft& draft, const std::vector<Index>& triangles, Plc::Patch& patch);
+void fit_plane(facets::ComplexDraft& draft, const std::vector<Index>& triangles, Plc::Patch& patch);
 
 }  // namespace collarmesh::plc

@@ -16,7 +16,7 @@ using Border = std::vector<Index>;  // edges, sorted
 
 class InterfaceFinder {
  public:
-  explicit InterfaceFinder(Draft& draft)
+  explicit InterfaceFinder(ComplexDraft& draft)
       : draft_(draft),
         edges_(draft.triangles, draft.points.size()),
         clusters_(find_flat_clusters(draft, edges_)) {}
@@ -25,7 +25,7 @@ class InterfaceFinder {
     const auto clusters = clusters_on_common_edges();
     std::map<Border, Index> first_of_border;
     std::vector<bool> removed(draft_.triangles.size(), false);
-    Draft added;
+    ComplexDraft added;
     for (const auto& [seed, triangles] : clusters) {
       const auto [at, is_first] = first_of_border.try_emplace(border(seed, triangles), seed);
       const Index first = at->second;
@@ -65,7 +65,7 @@ class InterfaceFinder {
     return result;
   }
 
-  void copy(const std::vector<Index>& triangles, Index seed, Draft& added) const {
+  void copy(const std::vector<Index>& triangles, Index seed, ComplexDraft& added) const {
     for (const Index t : triangles) {
       Corners corners = draft_.triangles[t];
       if (dot(clusters_.normal[t], clusters_.normal[seed]) < 0) std::swap(corners[1], corners[2]);
@@ -73,7 +73,7 @@ class InterfaceFinder {
     }
   }
 
-  void replace(const std::vector<bool>& removed, const Draft& added) {
+  void replace(const std::vector<bool>& removed, const ComplexDraft& added) {
     Index kept = 0;
     for (Index t = 0; t < draft_.triangles.size(); ++t) {
       if (removed[t]) continue;
@@ -86,13 +86,13 @@ class InterfaceFinder {
       draft_.add_triangle(added.triangles[t], added.origins[t]);
   }
 
-  Draft& draft_;
+  ComplexDraft& draft_;
   EdgeTable edges_;
   FlatClusters clusters_;
 };
 
 }  // namespace
 
-void unify_interfaces(Draft& draft) { InterfaceFinder(draft).run(); }
+void unify_interfaces(ComplexDraft& draft) { InterfaceFinder(draft).run(); }
 
 }  // namespace collarmesh::plc

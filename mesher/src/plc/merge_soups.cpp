@@ -4,7 +4,7 @@
 #include <set>
 #include <vector>
 
-#include "facets/draft.h"
+#include "facets/complex_draft.h"
 #include "facets/facet_triangulation.h"
 #include "facets/faults.h"
 #include "facets/weld.h"
@@ -147,7 +147,7 @@ class Merger {
   std::span<const PolygonSoup> soups_;
   const MergeSoupsOptions& options_;
   MergeReport& report_;
-  Draft draft_;
+  ComplexDraft draft_;
   Faults faults_;
   PointMap map_;
   PointMap identity_;

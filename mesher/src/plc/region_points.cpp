@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "collarmesh/merge_soups.h"
-#include "facets/draft.h"
+#include "facets/complex_draft.h"
 #include "facets/edges.h"
 #include "facets/shells.h"
 #include "facets/simplices.h"
@@ -49,8 +49,8 @@ class PointPlacer {
   }
 
  private:
-  static Draft draft_of(const Plc& plc) {
-    Draft draft;
+  static ComplexDraft draft_of(const Plc& plc) {
+    ComplexDraft draft;
     draft.points = plc.points;
     draft.bounds = plc.bounds;
     for (const Plc::Triangle& t : plc.triangles) draft.add_triangle(t.points, {});
@@ -127,7 +127,7 @@ class PointPlacer {
   }
 
   const Plc& plc_;
-  Draft draft_;
+  ComplexDraft draft_;
   EdgeTable edges_;
   DisjointSets shells_;
   Simplices simplices_;

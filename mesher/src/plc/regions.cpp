@@ -33,8 +33,8 @@ class Sum {
   double sum_ = 0, lost_ = 0;
 };
 
-// A bounded chamber: one that a component of the surface encloses.
-struct Chamber {
+// A bounded component of space without the triangles: one that a component of the surface encloses.
+struct BoundedChamber {
   Index inner_shell = none;  // inner shell of the component that encloses it
   bool complex = false;
   bool claimed = false;           // a facet has this chamber behind it
@@ -49,7 +49,7 @@ struct Chamber {
 
 class RegionFinder {
  public:
-  RegionFinder(const Draft& draft, const EdgeTable& edges, const BoxTree& boxes, Faults& faults)
+  RegionFinder(const ComplexDraft& draft, const EdgeTable& edges, const BoxTree& boxes, Faults& faults)
       : draft_(draft),
         faults_(faults),
         count_(static_cast<Index>(draft.triangles.size())),
@@ -176,7 +176,7 @@ class RegionFinder {
     share.area += norm(cross(draft_.corner(side / 2, 1) - draft_.corner(side / 2, 0),
                              draft_.corner(side / 2, 2) - draft_.corner(side / 2, 0)));
     share.first_triangle = std::min(share.first_triangle, side / 2);
-    Chamber& chamber = list_[at];
+    BoundedChamber& chamber = list_[at];
     if (draft_.soup_is_complex[soup]) {
       chamber.complex = true;
       return;
@@ -191,13 +191,13 @@ class RegionFinder {
     constexpr double clearly_more = 1 + 1e-9;
     double area = 0;
     for (const auto& [key, share] : shares_) {
-      Chamber& chamber = list_[key[0]];
+      BoundedChamber& chamber = list_[key[0]];
       if (chamber.owner != none && share.area <= clearly_more * area) continue;
       chamber.owner = key[1];
       chamber.first_triangle = share.first_triangle;
       area = share.area;
     }
-    for (Chamber& chamber : list_) {
+    for (BoundedChamber& chamber : list_) {
       if (chamber.owner != none) continue;
       chamber.first_triangle = chamber.inner_shell / 2;
       chamber.owner = draft_.origins[chamber.first_triangle].soup;
@@ -260,7 +260,7 @@ class RegionFinder {
       stack.pop_back();
       const auto [first, last] = children.equal_range(around);
       for (auto child = first; child != last; ++child) {
-        Chamber& chamber = list_[child->second];
+        BoundedChamber& chamber = list_[child->second];
         chamber.region = is_region(chamber, region_of_chamber_[around] != 0) ? 1 : 0;
         const Index set = chambers_.find(chamber.inner_shell);
         region_of_chamber_[set] = chamber.region;
@@ -270,14 +270,14 @@ class RegionFinder {
   }
 
   // Returns the chamber that surrounds the component enclosing this chamber.
-  Index parent(const Chamber& chamber) {
+  Index parent(const BoundedChamber& chamber) {
     return chambers_.find(outer_shell_[components_.find(chamber.inner_shell / 2)]);
   }
 
   // Returns whether a chamber is a region. A cavity that touches the surface around it lies in front of that
   // surface's facets everywhere. A chamber that also has facets to the outside is not a cavity but a body
   // whose facets are turned inside out.
-  static bool is_region(const Chamber& chamber, bool inside_region) {
+  static bool is_region(const BoundedChamber& chamber, bool inside_region) {
     const bool filled = chamber.claiming_surface != none && chamber.claiming_surface != chamber.hole_soup;
     if (chamber.hole_soup != none) return filled;
     return chamber.complex || chamber.claimed ||
@@ -301,8 +301,8 @@ class RegionFinder {
     for (Index side = 0; side < 2 * count_; ++side)
       result.of_side[side] = region_of_chamber_[chambers_.find(side)];
     result.list.emplace_back().name = "outside";
-    std::vector<const Chamber*> by_region{nullptr};
-    for (const Chamber& c : list_) {
+    std::vector<const BoundedChamber*> by_region{nullptr};
+    for (const BoundedChamber& c : list_) {
       if (c.region == 0) continue;
       if (c.region >= by_region.size()) by_region.resize(c.region + 1);
       by_region[c.region] = &c;
@@ -369,7 +369,7 @@ class RegionFinder {
     for (std::size_t r = 1; r < sums.size(); ++r) result.list[r].volume = sums[r].value() / 6;
   }
 
-  const Draft& draft_;
+  const ComplexDraft& draft_;
   Faults& faults_;
   Index count_;
   Index outside_;            // representative of the outside
@@ -378,7 +378,7 @@ class RegionFinder {
   DisjointSets chambers_;    // sets of sides
   LineCaster caster_;
   std::vector<Index> outer_shell_;  // by component
-  std::vector<Chamber> list_;
+  std::vector<BoundedChamber> list_;
   std::vector<Index> chamber_of_shell_;           // index in list_
   std::vector<Index> region_of_chamber_;          // by representative
   std::map<std::array<Index, 2>, Share> shares_;  // by chamber and soup
@@ -388,7 +388,7 @@ class RegionFinder {
 
 }  // namespace
 
-Regions find_regions(const Draft& draft, const EdgeTable& edges, const BoxTree& boxes,
+Regions find_regions(const ComplexDraft& draft, const EdgeTable& edges, const BoxTree& boxes,
                      std::span<const PolygonSoup> soups, Faults& faults) {
   return RegionFinder(draft, edges, boxes, faults).run(soups);
 }

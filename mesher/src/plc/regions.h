@@ -5,7 +5,7 @@
 
 #include "collarmesh/plc.h"
 #include "common/box_tree.h"
-#include "facets/draft.h"
+#include "facets/complex_draft.h"
 #include "facets/edges.h"
 #include "facets/faults.h"
 
@@ -23,7 +23,7 @@ struct Regions {
 /// edges and corners only. A region is named after the soup with the largest part of its boundary. Faults:
 /// region and hole points on a facet. Warnings: region and hole points without effect. The triangles are the
 /// first items of the tree, in their order.
-Regions find_regions(const facets::Draft& draft, const facets::EdgeTable& edges, const BoxTree& boxes,
+Regions find_regions(const facets::ComplexDraft& draft, const facets::EdgeTable& edges, const BoxTree& boxes,
                      std::span<const PolygonSoup> soups, facets::Faults& faults);
 
 }  // namespace collarmesh::plc

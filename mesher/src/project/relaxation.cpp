@@ -166,20 +166,20 @@ const Relaxation::Wanted& Relaxation::wanted(Index tet) const {
 
 // Returns the sum of the penalties of the tets at the vertex; any value >= `below` if the sum is not smaller
 // than that.
-double Relaxation::lack_around(std::span<const Index> tets, Index vertex, const Point& place,
-                               double below) const {
-  double lack = 0;
+double Relaxation::penalty_around(std::span<const Index> tets, Index vertex, const Point& place,
+                                  double below) const {
+  double penalty = 0;
   for (const Index t : tets) {
     Corners p = corners(t, mesh_.points);
     for (unsigned i = 0; i < 4; ++i)
       if (mesh_.tets[t][i] == vertex) p[i] = place;
-    lack += lack_of(t, p);
-    if (lack >= below) break;
+    penalty += penalty_of(t, p);
+    if (penalty >= below) break;
   }
-  return lack;
+  return penalty;
 }
 
-double Relaxation::lack_of(Index tet, const Corners& p) const {
+double Relaxation::penalty_of(Index tet, const Corners& p) const {
   const double missing = 1 - score(tet, p);
   return missing * missing;
 }
@@ -194,12 +194,13 @@ bool Relaxation::improve(Index vertex) {
   const Point start = mesh_.points[vertex];
   // Most places do not help the worst tets, so evaluate these first.
   worst_first_.clear();
-  for (const Index t : tets_at_[vertex]) worst_first_.emplace_back(-lack_of(t, corners(t, mesh_.points)), t);
+  for (const Index t : tets_at_[vertex])
+    worst_first_.emplace_back(-penalty_of(t, corners(t, mesh_.points)), t);
   std::ranges::sort(worst_first_);
   around_.clear();
   double at_start = 0;
-  for (const auto& [lack, t] : worst_first_) {
-    at_start -= lack;
+  for (const auto& [penalty, t] : worst_first_) {
+    at_start -= penalty;
     around_.push_back(t);
   }
   if (at_start <= 0) return false;
@@ -217,9 +218,9 @@ bool Relaxation::improve(Index vertex) {
   const auto consider = [&](const Point& wish) {
     const std::optional<Point> p = on_feature(vertex, wish);
     if (!p || least <= 0) return false;
-    const double lack = lack_around(around_, vertex, *p, least);
-    if (lack >= least || !fits_features(vertex, *p)) return false;
-    least = lack;
+    const double penalty = penalty_around(around_, vertex, *p, least);
+    if (penalty >= least || !fits_features(vertex, *p)) return false;
+    least = penalty;
     place = *p;
     return true;
   };
@@ -241,9 +242,9 @@ std::vector<Index> Relaxation::relax(std::vector<Index> tets) {
     std::vector<Index> vertices;
     double missing_now = 0;
     for (const Index t : tets) {
-      const double lack = lack_of(t, corners(t, mesh_.points));
-      if (lack <= 0) continue;
-      missing_now += lack;
+      const double penalty = penalty_of(t, corners(t, mesh_.points));
+      if (penalty <= 0) continue;
+      missing_now += penalty;
       for (const Index v : mesh_.tets[t])
         if (free_[v]) vertices.push_back(v);
     }

@@ -91,8 +91,8 @@ class Relaxation {
   double collar_score(Index tet, const Corners& p) const;
   double score(Index tet, const Corners& p) const;
   double angle_score(Index tet, const Corners& p) const;
-  double lack_of(Index tet, const Corners& p) const;
-  double lack_around(std::span<const Index> tets, Index vertex, const Point& place, double below) const;
+  double penalty_of(Index tet, const Corners& p) const;
+  double penalty_around(std::span<const Index> tets, Index vertex, const Point& place, double below) const;
   bool improve(Index vertex);
   bool in_vain(Index vertex) const;
   bool any_around_after(const remeshing::ChangeTimes& times, std::uint32_t time, Index vertex) const;

@@ -84,7 +84,7 @@ void BlockRefinement::give_back(Worker& worker) {
   idle_workers_.push_back(&worker);
 }
 
-bool BlockRefinement::due() {
+bool BlockRefinement::is_due() {
   const std::size_t vertices = mesh_.vertex_count();
   if (vertices < next_round_) return false;
   priority_ = queue_.first_priority();
@@ -211,7 +211,7 @@ std::vector<std::vector<WorkQueue::Entry>> BlockRefinement::deal(const std::vect
       constexpr std::size_t ahead = 16;
       if (i + ahead < last)
         mesh_.prefetch(of_cells(priority_) ? taken[i + ahead].id : cell_of(taken[i + ahead].id));
-      owner[i] = due({priority_, taken[i]}) ? owner_of(taken[i]) : gone;
+      owner[i] = is_due({priority_, taken[i]}) ? owner_of(taken[i]) : gone;
     }
   });
   std::vector<std::vector<WorkQueue::Entry>> entries(block_count());
@@ -270,12 +270,12 @@ void BlockRefinement::refine(Block block, const std::vector<WorkQueue::Entry>& e
   for (const WorkQueue::Entry& entry : entries) queue.put(priority_, bucket_, entry);
   WorkQueue::Item item;
   while (any_left(queue) && queue.pop(item)) {
-    if (!due(item)) continue;
+    if (!is_due(item)) continue;
     const double radius = squared_radius(item);
     const Fate fate = destroy(item, block, worker);
     if (fate == Fate::waits)
       waiting.push_back({item.priority, queue.bucket_of(radius), item.entry});
-    else if (fate == Fate::destroyed && due(item))  // another vertex was inserted, and the item still exists
+    else if (fate == Fate::destroyed && is_due(item))  // another vertex was inserted, and the item remains
       queue.push(item.priority, radius, item.entry);
   }
   for (WorkQueue::Priority priority = queue.first_priority(); priority < WorkQueue::priority_count;
@@ -294,8 +294,8 @@ bool BlockRefinement::any_left(WorkQueue& queue) const {
   return priority < priority_ || (priority == priority_ && queue.first_bucket(priority) <= bucket_);
 }
 
-bool BlockRefinement::due(const WorkQueue::Item& item) const {
-  return of_cells(item.priority) ? cells_.due(item) : triangles_.due(item.entry);
+bool BlockRefinement::is_due(const WorkQueue::Item& item) const {
+  return of_cells(item.priority) ? cells_.is_due(item) : triangles_.is_due(item.entry);
 }
 
 double BlockRefinement::squared_radius(const WorkQueue::Item& item) const {

@@ -40,7 +40,7 @@ class BlockRefinement {
                   const CellQuality& cells, WorkQueue& queue);
 
   /// Returns whether cells or triangles are next in the queue, and enough of them to make a round worthwhile.
-  bool due();
+  bool is_due();
   /// Runs a round. Precondition: it is due.
   void round();
   /// Returns the number of vertices that all rounds have inserted.
@@ -94,7 +94,7 @@ class BlockRefinement {
   void refine(Block block, const std::vector<WorkQueue::Entry>& entries, Worker& worker,
               std::vector<Waiting>& waiting);
   bool any_left(WorkQueue& queue) const;
-  bool due(const WorkQueue::Item& item) const;
+  bool is_due(const WorkQueue::Item& item) const;
   double squared_radius(const WorkQueue::Item& item) const;
   std::optional<Candidate> candidate(const WorkQueue::Item& item, RandomOffsets& random) const;
   enum class Fate {

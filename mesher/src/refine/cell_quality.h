@@ -45,7 +45,7 @@ class CellQuality {
   std::optional<Candidate> candidate(Index cell, RandomOffsets& random) const;
   /// Returns whether the cell of a queue entry still exists and is outside the collars. In the paper's
   /// profile skinny cells inside collars are due, too.
-  bool due(const WorkQueue::Item& item) const {
+  bool is_due(const WorkQueue::Item& item) const {
     return mesh_.alive(item.entry.id, item.entry.stamp) &&
            (!collar_cells_.inside(item.entry.id) ||
             (domain_.is_papers() && item.priority == WorkQueue::skinny_cells));

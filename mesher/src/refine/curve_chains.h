@@ -74,7 +74,8 @@ class CurveChains {
   /// subsegment: of the medial ends, the one nearer to the candidate. None if there is no such end.
   Index end_to_resolve(Index subsegment, const Candidate& candidate) const;
 
-  bool due(const WorkQueue::Entry& entry) const { return is_there({entry.id, entry.stamp}); }
+  /// Returns whether the subsegment of a queue entry still exists.
+  bool is_due(const WorkQueue::Entry& entry) const { return is_there({entry.id, entry.stamp}); }
   // To split a subsegment the loop calls:
   // 1. CollarCreator::create_at_subsegment; if that returns true, nothing more;
   // 2. `split_of`; if that returns nothing, nothing more;
@@ -84,7 +85,7 @@ class CurveChains {
   //    if the candidate warps: for an item of the queue `queue_again`, after the other point was inserted;
   //    otherwise: `drop_ball`, force_insert and `split_at`.
   /// Returns where to split a subsegment. If its ball is at the floor, gives up and returns nothing.
-  /// Precondition: the subsegment exists (`due`, or `encroached`).
+  /// Precondition: the subsegment exists (`is_due`, or `encroached`).
   std::optional<Split> split_of(Index subsegment);
   /// Returns whether the mesh vertex at the place can split the subsegment: it must not be one of its ends.
   bool can_join(const Split& split) const;

@@ -85,7 +85,7 @@ class GapExplorer final : public GapSize {
   std::span<const Point> points_;
   const RefinedMesh& mesh_;
   const SurfaceNodes& nodes_;
-  std::vector<Border> borders_;             // of elements that have a border
+  std::vector<Border> borders_;             // borders of the elements that have one
   std::vector<Index> border_of_;            // by element: index in borders_; none: no border
   std::vector<Index> patch_below_;          // by node: the patch of all elements below, if none has a border
   std::vector<Witness> witnesses_;          // last witnesses of vertices, then of curves

@@ -80,7 +80,7 @@ MeshStatus Refinement::run() {
   if (trace_) trace_->record("box");
   while (!outcome_.stopped()) {
     for (;;) {
-      if (first_pass && blocks_.due()) {
+      if (first_pass && blocks_.is_due()) {
         if (observer_ && queue_.first_priority() > WorkQueue::skinny_cells) observer_();
         blocks_.round();
         if (counter_) counter_->note_round(blocks_.largest_zone());
@@ -90,7 +90,7 @@ MeshStatus Refinement::run() {
       if (observer_ && item.priority > WorkQueue::skinny_cells) observer_();
       if (item.priority > WorkQueue::encroached_subsegments) collar_creator_.create_on_isolated_curves();
       process(item);
-      if (trace_ && trace_->due()) trace_->record("refine", working_on_);
+      if (trace_ && trace_->is_due()) trace_->record("refine", working_on_);
       if (++steps_ % steps_between_stops == 0 && stopped()) return outcome_.status();
     }
     first_pass = false;
@@ -124,21 +124,21 @@ void Refinement::process(const WorkQueue::Item& item) {
   working_on_ = item.priority;
   switch (item.priority) {
     case WorkQueue::encroached_subsegments:
-      if (curves_.due(item.entry)) split_ahead(id);
+      if (curves_.is_due(item.entry)) split_ahead(id);
       break;
     case WorkQueue::coarse_subsegments:
-      if (curves_.due(item.entry)) destroy_subsegment(id, true);
+      if (curves_.is_due(item.entry)) destroy_subsegment(id, true);
       break;
     case WorkQueue::unresolved_points:
-      if (points_.due(id, stamp)) resolve_point(id);
+      if (points_.is_due(id, stamp)) resolve_point(id);
       break;
     case WorkQueue::skinny_cells:
     case WorkQueue::large_cells:
-      if (cells_.due(item)) destroy_cell(item);
+      if (cells_.is_due(item)) destroy_cell(item);
       break;
     case WorkQueue::unresolved_triangles:
     case WorkQueue::large_triangles:
-      if (triangles_.due(item.entry)) destroy_triangle(item);
+      if (triangles_.is_due(item.entry)) destroy_triangle(item);
       break;
     case WorkQueue::exposed_crease_vertices:
     case WorkQueue::poor_collar_triangles:
@@ -308,7 +308,7 @@ Index Refinement::force_insert(const Feature& feature) {
 bool Refinement::too_early() {
   return working_on_ != WorkQueue::skinny_cells &&
          queue_.any_due(WorkQueue::skinny_cells, [&](const WorkQueue::Entry& entry) {
-           return cells_.due({WorkQueue::skinny_cells, entry});
+           return cells_.is_due({WorkQueue::skinny_cells, entry});
          });
 }
 

@@ -83,7 +83,7 @@ class SurfaceCheck {
   UnresolvedPoints& points_;
   CurveChains& curves_;
   Outcome& outcome_;
-  std::vector<TessellationPoint> tessellation_;        // of all smooth patches, one after the other
+  std::vector<TessellationPoint> tessellation_;        // points of all smooth patches, one after the other
   std::vector<std::size_t> first_tessellation_point_;  // by patch; empty before the first check
   unsigned rounds_ = 0;
 };

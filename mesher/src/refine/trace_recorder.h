@@ -14,7 +14,8 @@ class TraceRecorder {
  public:
   explicit TraceRecorder(const Refined& parts) : parts_(parts) {}
 
-  bool due() const { return parts_.mesh.vertex_count() >= next_ && next_ <= most_vertices; }
+  /// Returns whether the mesh has grown enough for another step.
+  bool is_due() const { return parts_.mesh.vertex_count() >= next_ && next_ <= most_vertices; }
   /// Records a step. Precondition: no insertion is in progress. `working_on`: the kind of work done last.
   void record(const std::string& stage, WorkQueue::Priority working_on = WorkQueue::priority_count);
   const Trace& trace() const { return trace_; }

@@ -81,7 +81,7 @@ Point TriangleQuality::place(FaceId face, RandomOffsets& random) const {
   return domain_.frame.rounded(p);
 }
 
-bool TriangleQuality::due(const WorkQueue::Entry& entry) const {
+bool TriangleQuality::is_due(const WorkQueue::Entry& entry) const {
   const FaceId face = entry.id;
   if (!mesh_.alive(cell_of(face), entry.stamp) || !surface_.is_marked(face)) return false;
   const TriangleNotes& notes = surface_.notes(face);

@@ -44,7 +44,7 @@ class TriangleQuality {
   /// Several threads may call it at once, each with its own offsets and for triangles in its own block.
   std::optional<Candidate> candidate_beside(FaceId face, RandomOffsets& random) const;
   /// Returns whether the triangle of a queue entry must still be destroyed.
-  bool due(const WorkQueue::Entry& entry) const;
+  bool is_due(const WorkQueue::Entry& entry) const;
   /// Queues a triangle again if it still exists after another insertion.
   void queue_again(const WorkQueue::Item& item, double squared_radius);
   /// Records that no point could be inserted to destroy a triangle, so that it is not tried again.

@@ -44,7 +44,7 @@ void UnresolvedPoints::queue(Index point) {
   queue_.push(WorkQueue::unresolved_points, r2, {point, static_cast<std::uint32_t>(exponent(r2))});
 }
 
-bool UnresolvedPoints::due(Index point, std::uint32_t stamp) {
+bool UnresolvedPoints::is_due(Index point, std::uint32_t stamp) {
   const Unresolved& p = points_[point];
   if (p.object == none) return false;
   if (exponent(squared_ball(p)) >= static_cast<int>(stamp)) return true;

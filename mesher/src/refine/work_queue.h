@@ -82,11 +82,11 @@ class WorkQueue {
     return bucket;
   }
   /// Returns whether any entry of a priority is still due. Drops entries that are not.
-  template <class Due>
-  bool any_due(Priority priority, const Due& due) {
+  template <class IsDue>
+  bool any_due(Priority priority, const IsDue& is_due) {
     for (unsigned bucket = first_bucket(priority); bucket < bucket_count; bucket = first_bucket(priority)) {
       auto& entries = buckets_[priority][bucket];
-      while (!entries.empty() && !due(entries.back())) entries.pop_back();
+      while (!entries.empty() && !is_due(entries.back())) entries.pop_back();
       if (!entries.empty()) return true;
     }
     return false;

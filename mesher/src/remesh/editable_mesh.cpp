@@ -58,7 +58,7 @@ const std::vector<Index>& EditableMesh::apply(Change change) {
       curves.divided(vertex, change.middle);
     }
   }
-  if (change.kind == Change::Kind::contraction && complex.mesh().features[change.vertex].dimension == 1) {
+  if (change.kind == Change::Kind::collapse && complex.mesh().features[change.vertex].dimension == 1) {
     const auto [before, after] = curves.neighbours(change.vertex);
     complex.join_curve_edges(before, change.vertex, after);
     curves.skipped(change.vertex);

@@ -18,7 +18,7 @@ namespace collarmesh::remeshing {
 
 /// A proposed change of the mesh.
 struct Change {
-  enum class Kind { none, edge_removal, boundary_flip, move, insertion, contraction };
+  enum class Kind { none, edge_removal, boundary_flip, move, insertion, collapse };
   /// Stands for the vertex that an insertion makes.
   static constexpr Index inserted = none;
 
@@ -101,8 +101,8 @@ class EditableMesh {
   /// Returns false if the change is a collapse that is no longer allowed, because others on the same curve
   /// have used up its spare edges.
   bool curve_can_spare(const Change& change) const {
-    return change.kind != Change::Kind::contraction ||
-           complex.mesh().features[change.vertex].dimension != 1 || curves.may_skip(change.vertex);
+    return change.kind != Change::Kind::collapse || complex.mesh().features[change.vertex].dimension != 1 ||
+           curves.may_skip(change.vertex);
   }
   /// Returns whether an edge to `onto` could lie in the vertex's curve or patch.
   bool may_share_feature(Index vertex, Index onto) const {

@@ -59,18 +59,18 @@ class Operations {
   enum class Lengths { no_longer, any };
   /// Collapses an edge: moves a vertex along it, within the vertex's feature, onto the other end, so that the
   /// tets at the edge vanish. `anyhow_above`: as for `remove_edge`.
-  void contract_edge(Index vertex, Index onto, Change& change, std::optional<double> anyhow_above = {},
+  void collapse_edge(Index vertex, Index onto, Change& change, std::optional<double> anyhow_above = {},
                      Lengths lengths = Lengths::no_longer);
   /// Collapses the edge of a tet whose collapse leaves the best tets.
-  void contract_best_edge(Index tet, Change& change, Lengths lengths = Lengths::no_longer);
+  void collapse_best_edge(Index tet, Change& change, Lengths lengths = Lengths::no_longer);
 
   /// Begins queries about collapses of edges at this vertex, whose star is given. Returns false if the vertex
   /// has to stay.
-  bool begin_contractions(Index vertex, std::span<const Index> star);
+  bool begin_collapses(Index vertex, std::span<const Index> star);
   /// Proposes the collapse of the queried vertex onto `onto`, under stricter conditions: the rule allows all
   /// new tets, none is worse than `least`, and those below `enough` are no worse than the worst tet of the
   /// cavity.
-  void contract_onto(Index onto, double least, double enough, Change& change);
+  void collapse_onto(Index onto, double least, double enough, Change& change);
   /// Returns the quality of the worst tet at the queried vertex.
   double worst_at_vertex() { return worst_at_vertex(vertex_); }
 
@@ -156,13 +156,13 @@ class Operations {
   std::pair<double, double> best_way(Index vertex, double best);
   std::vector<Point> facing_places(Index vertex, const Freedom& where);
   void fill_move(Index vertex, const Point& place, double quality, Change& change);
-  bool may_contract(Index vertex, Index onto);
+  bool may_collapse(Index vertex, Index onto);
   bool keeps_topology(Index vertex, Index onto);
   bool keeps_lengths(Index vertex, Index onto) const;
   void fill(Index apex, Change& change) const;
   void fill_insertion(const Point& place, double quality, const TetMesh::VertexFeature& feature,
                       Change& change) const;
-  void fill_contraction(Index vertex, Index onto, double quality, Change& change) const;
+  void fill_collapse(Index vertex, Index onto, double quality, Change& change) const;
 
   bool untouchable(const TetComplex::Tet& tet) const {
     return (tet.collar && !rule_.dissolves_collars()) || edited_.leaves(tet);

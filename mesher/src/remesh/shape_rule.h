@@ -74,9 +74,9 @@ class ThinRule final : public AngleRule {
 
   double quality_of(const ExtremeCosines& cosines, const Corners& p,
                     const std::array<Index, 4>& corners) const override {
-    const auto [sharp, blunt] = bounds_.thin.squared_margins(cosines, p, corners);
-    if (blunt < 0) return -1;
-    const double quality = std::sqrt(std::min(sharp, blunt));
+    const auto [of_smallest, of_largest] = bounds_.thin.squared_margins(cosines, p, corners);
+    if (of_largest < 0) return -1;
+    const double quality = std::sqrt(std::min(of_smallest, of_largest));
     const bool fits = !bounds_.cells.forbid_thin_tets() || bounds_.cells.allow(p, corners);
     return fits ? quality : CellBounds::forbidden * std::min(1.0, quality);
   }
@@ -98,7 +98,8 @@ class SliverRule final : public ShapeRule {
     const double sine = shape_quality(p);
     if (thin_ == nullptr || !(sine > 0)) return sine;
     if (forbids_thin_tets() && !cells_->allow(p, corners)) return CellBounds::forbidden * sine;
-    return thin_->is_blunt(p, sine) ? beyond * sine : thin_->shape_quality_where_forced(p, corners, sine);
+    return thin_->is_too_obtuse(p, sine) ? beyond * sine
+                                         : thin_->shape_quality_where_forced(p, corners, sine);
   }
   bool allows(const Corners& p, const std::array<Index, 4>& corners, double /*quality*/) const override {
     return (bound_.holds(p) || (thin_ != nullptr && thin_->contains(p, corners))) &&
@@ -124,7 +125,7 @@ class SliverRule final : public ShapeRule {
   void set_least_gain(double share) { least_gain_ = share; }
   /// Returns whether a tet of this quality has an angle above the largest one of thin tets or one below 0.06
   /// degrees, or is forbidden by the bounds on cells. False if no tet may be thin.
-  bool is_blunt(double quality) const { return thin_ != nullptr && quality < beyond; }
+  bool is_too_obtuse(double quality) const { return thin_ != nullptr && quality < beyond; }
 
  private:
   static constexpr double beyond = 1e-3;

@@ -39,8 +39,8 @@ ThinShape::ThinShape(const Plc& plc, const TetMesh& mesh, double smallest_angle,
       sine_(sine_above(smallest_)),
       cosine_(
           signed_square(std::cos((180 - (180 - largest_angle) * (1 + reserve) - 2 * rounding) * radians))),
-      least_blunt_(sine(cosine_)),
-      inverse_squared_least_blunt_(1 / squared_sine(cosine_)),
+      sine_of_largest_(sine(cosine_)),
+      inverse_squared_sine_of_largest_(1 / squared_sine(cosine_)),
       share_((1 + reserve) / tets_across),
       forced_(std::move(forced)) {
   if (empty()) return;

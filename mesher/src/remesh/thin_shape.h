@@ -82,7 +82,7 @@ inline ExtremeCosines extreme_cosines(const Corners& p) {
 /// obtuse, and face angles are below the second one. Has no divisions; returns false in close cases.
 inline bool surely_between(const Corners& p, double squared_cosine, double squared_obtuse_cosine) {
   constexpr double rounding = 1e-9;
-  const double sharp = squared_cosine * (1 - rounding), blunt = squared_obtuse_cosine * (1 - rounding);
+  const double acute = squared_cosine * (1 - rounding), obtuse = squared_obtuse_cosine * (1 - rounding);
   const Vector ab = p[1] - p[0], ac = p[2] - p[0], ad = p[3] - p[0], bc = p[2] - p[1], bd = p[3] - p[1],
                cd = p[3] - p[2];
   const Vector n_a = cross(bc, bd), n_b = cross(ad, ac), n_c = cross(ab, ad), n_d = cross(ac, ab);
@@ -93,7 +93,7 @@ inline bool surely_between(const Corners& p, double squared_cosine, double squar
   // The negated product of outward normals has the sign of the cosine.
   const auto see_edge = [&](const Vector& m, const Vector& n, double squares) {
     const double product = dot(m, n);
-    require(product * product < (product < 0 ? sharp : blunt) * squares);
+    require(product * product < (product < 0 ? acute : obtuse) * squares);
   };
   see_edge(n_c, n_d, c * d);
   see_edge(n_b, n_d, b * d);
@@ -104,7 +104,7 @@ inline bool surely_between(const Corners& p, double squared_cosine, double squar
   // Tests a corner of a face, between sides of squared lengths x and y.
   const auto see_corner = [&](double x, double y, double across) {
     const double product = std::min(0.0, x + y - across);
-    require(product * product < 4 * blunt * (x * y));
+    require(product * product < 4 * obtuse * (x * y));
   };
   const auto see_face = [&](double x, double y, double z) {
     see_corner(x, y, z);
@@ -159,25 +159,25 @@ class ThinShape {
   }
   /// Returns whether a tet of positive volume has an angle above the largest one of thin tets. `shape` is its
   /// shape_quality, which rules out such dihedral angles for most tets.
-  bool is_blunt(const Corners& p, double shape) const {
-    return shape > obtuse_weight * least_blunt_ + rounding ? least_cosine_of_faces(p) < cosine_
-                                                           : extreme_cosines(p).largest_angle < cosine_;
+  bool is_too_obtuse(const Corners& p, double shape) const {
+    return shape > obtuse_weight * sine_of_largest_ + rounding ? least_cosine_of_faces(p) < cosine_
+                                                               : extreme_cosines(p).largest_angle < cosine_;
   }
   /// The squared sines of the smallest angle and of 180 degrees minus the largest angle, relative to those of
   /// their bounds: both are at least 1 if a tet is thin. Negative for a flat or an inverted tet.
   struct SquaredMargins {
-    double sharp, blunt;
+    double of_smallest, of_largest;
   };
   SquaredMargins squared_margins(const ExtremeCosines& cosines, const Corners& p,
                                  const std::array<Index, 4>& corners) const {
     if (!cosines.positive) return {-1, -1};
-    const double least = smallest_sine_at(corners), sharp = squared_sine(cosines.smallest_angle),
-                 blunt = cosines.largest_angle < 0 ? squared_sine(cosines.largest_angle) : 1;
-    double margin = sharp / (least * least);
+    const double least = smallest_sine_at(corners), smallest = squared_sine(cosines.smallest_angle),
+                 largest = cosines.largest_angle < 0 ? squared_sine(cosines.largest_angle) : 1;
+    double margin = smallest / (least * least);
     if (forced_ && margin < good_enough)
       if (const double forced = forced_sine(p, corners); forced < deep)
-        margin = std::max(margin, std::min(good_enough, sharp / (forced * forced)));
-    return {margin, blunt * inverse_squared_least_blunt_};
+        margin = std::max(margin, std::min(good_enough, smallest / (forced * forced)));
+    return {margin, largest * inverse_squared_sine_of_largest_};
   }
   /// Returns the quality of a tet of positive volume; `sine` is its quality by angles alone (shape_quality).
   /// At forced edges, small angles count relative to what the edges permit, so that large angles decide.
@@ -186,21 +186,22 @@ class ThinShape {
     const double forced = sine < largest_forced_sine ? forced_sine(p, corners) : 1;
     if (forced >= deep) return sine;
     const ExtremeCosines cosines = extreme_cosines(p);
-    const double sharp = remeshing::sine(cosines.smallest_angle) * sine_ / forced;
-    return cosines.largest_angle < 0 ? std::min(sharp, obtuse_weight * remeshing::sine(cosines.largest_angle))
-                                     : sharp;
+    const double smallest = remeshing::sine(cosines.smallest_angle) * sine_ / forced;
+    return cosines.largest_angle < 0
+               ? std::min(smallest, obtuse_weight * remeshing::sine(cosines.largest_angle))
+               : smallest;
   }
   /// Returns whether a tet of positive volume is about as good as its forced edges permit.
   bool is_as_forced(const Corners& p, const std::array<Index, 4>& corners) const {
     if (empty() || !forced_ || forced_sine(p, corners) >= deep) return false;
     const SquaredMargins margins = squared_margins(extreme_cosines(p), p, corners);
-    return std::min(margins.sharp, margins.blunt) >= good_enough;
+    return std::min(margins.of_smallest, margins.of_largest) >= good_enough;
   }
   /// Returns true only if both margins are above this value, which is at least 1. Much cheaper than the
   /// margins; may return false for some tets above it.
   bool surely_exceeds(double margin, const Corners& p) const {
-    const double sharp = margin * sine_, blunt = margin * least_blunt_;
-    return blunt < 1 && surely_between(p, 1 - sharp * sharp, 1 - blunt * blunt);
+    const double smallest = margin * sine_, largest = margin * sine_of_largest_;
+    return largest < 1 && surely_between(p, 1 - smallest * smallest, 1 - largest * largest);
   }
   /// Returns whether the tet is thin only because the input forces an edge to be short.
   bool is_thin_by_force(const Corners& p, const std::array<Index, 4>& corners) const {
@@ -232,7 +233,7 @@ class ThinShape {
   }
   double forced_sine(const Corners& p, const std::array<Index, 4>& corners) const;
 
-  double smallest_, sine_, cosine_, least_blunt_, inverse_squared_least_blunt_;
+  double smallest_, sine_, cosine_, sine_of_largest_, inverse_squared_sine_of_largest_;
   double share_;                        // share of the forced angle that tets must keep, including the
                                         // reserve
   std::vector<double> sine_at_vertex_;  // empty if no crease is sharp enough to lower the bound

@@ -228,9 +228,9 @@ void Operations::fill_insertion(const Point& place, double quality, const TetMes
 }
 
 // Proposes the collapse of the vertex of the current cone onto another one.
-void Operations::fill_contraction(Index vertex, Index onto, double quality, Change& change) const {
+void Operations::fill_collapse(Index vertex, Index onto, double quality, Change& change) const {
   change = {};
-  change.kind = Change::Kind::contraction;
+  change.kind = Change::Kind::collapse;
   change.quality = quality;
   change.vertex = vertex;
   fill(onto, change);
@@ -450,27 +450,27 @@ void Operations::divide_curve_edge(Index a, Index b, double least, Change& chang
   change.middle = *middle;
 }
 
-void Operations::contract_edge(Index vertex, Index onto, Change& change, std::optional<double> anyhow_above,
+void Operations::collapse_edge(Index vertex, Index onto, Change& change, std::optional<double> anyhow_above,
                                Lengths lengths) {
   if (mesh_.features[vertex].dimension == 0) return;
-  if (!find_cone_of_vertex(vertex) || !may_contract(vertex, onto)) return;
+  if (!find_cone_of_vertex(vertex) || !may_collapse(vertex, onto)) return;
   if ((lengths != Lengths::any && !keeps_lengths(vertex, onto)) || !keeps_topology(vertex, onto)) return;
   worst_at_vertex(vertex);
   const Point& place = mesh_.points[onto];
   const double above = anyhow_above.value_or(std::max(cone_.worst, change.quality));
   const double quality = quality_around(place, onto, above);
   if (quality < 0 || !surfaces_allow(place, onto)) return;
-  fill_contraction(vertex, onto, quality, change);
+  fill_collapse(vertex, onto, quality, change);
   if (mesh_.features[vertex].dimension < 3) change.read = star_;  // the star of the other end
 }
 
-void Operations::contract_best_edge(Index tet, Change& change, Lengths lengths) {
+void Operations::collapse_best_edge(Index tet, Change& change, Lengths lengths) {
   for (const Index v : complex_[tet].corners)
     for (const Index w : complex_[tet].corners)
-      if (v != w) contract_edge(v, w, change, {}, lengths);
+      if (v != w) collapse_edge(v, w, change, {}, lengths);
 }
 
-bool Operations::begin_contractions(Index vertex, std::span<const Index> star) {
+bool Operations::begin_collapses(Index vertex, std::span<const Index> star) {
   vertex_ = vertex;
   cone_.clear();
   if (mesh_.features[vertex].dimension == 0 || complex_.pinched(vertex) || edited_.is_fixed(vertex))
@@ -479,19 +479,19 @@ bool Operations::begin_contractions(Index vertex, std::span<const Index> star) {
   return make_cone_of_vertex(vertex);
 }
 
-void Operations::contract_onto(Index onto, double least, double enough, Change& change) {
-  if (!may_contract(vertex_, onto)) return;
+void Operations::collapse_onto(Index onto, double least, double enough, Change& change) {
+  if (!may_collapse(vertex_, onto)) return;
   const Point& place = mesh_.points[onto];
   const double quality = quality_around(place, onto, least);
   if (quality < 0 || (quality < enough && quality < worst_at_vertex(vertex_)) ||
       !keeps_topology(vertex_, onto) || !surfaces_allow(place, onto))
     return;
-  fill_contraction(vertex_, onto, quality, change);
+  fill_collapse(vertex_, onto, quality, change);
 }
 
 // Returns whether the edge to `onto` lies in the vertex's feature. On a curve, a single edge must also be
 // able to replace both edges at the vertex.
-bool Operations::may_contract(Index vertex, Index onto) {
+bool Operations::may_collapse(Index vertex, Index onto) {
   const auto& feature = mesh_.features[vertex];
   if (feature.dimension == 3) return true;
   if (feature.feature == none) return false;

@@ -63,7 +63,7 @@ struct Cuts {
 // One round of cutting: cuts intersecting pairs exactly, then rounds the new points.
 class Cutter {
  public:
-  Cutter(Draft& draft, const EdgeTable& edges, std::span<const Simplex> simplices)
+  Cutter(ComplexDraft& draft, const EdgeTable& edges, std::span<const Simplex> simplices)
       : draft_(draft), edges_(edges), simplices_(simplices) {}
 
   std::size_t run(const std::vector<std::pair<Index, Index>>& pairs) {
@@ -394,7 +394,7 @@ class Cutter {
     }
   }
 
-  Draft& draft_;
+  ComplexDraft& draft_;
   const EdgeTable& edges_;
   std::span<const Simplex> simplices_;
   std::map<Edge, std::vector<ExactPoint>> on_edge_;
@@ -407,7 +407,7 @@ class Cutter {
   std::vector<Index> ids_;  // numbers of these points in the draft; none: not added yet
 };
 
-void note_places(const Draft& draft, std::span<const Simplex> simplices,
+void note_places(const ComplexDraft& draft, std::span<const Simplex> simplices,
                  const std::vector<std::pair<Index, Index>>& pairs, std::vector<Point>& places) {
   const std::size_t step = pairs.size() / most_places + 1;
   for (std::size_t i = 0; i < pairs.size(); i += step) {
@@ -468,7 +468,7 @@ class Settled {
 // compared with each other.
 class GrainSnapper {
  public:
-  GrainSnapper(Draft& draft, double reach, Work* work, bool cancel, KeptMerges kept)
+  GrainSnapper(ComplexDraft& draft, double reach, Work* work, bool cancel, KeptMerges kept)
       : draft_(draft), reach_(reach), work_(work), cancel_(cancel), kept_(kept) {}
 
   // Pauses or resumes snapping after a round that did not help: if snapping undoes cuts, rounds without
@@ -493,15 +493,15 @@ class GrainSnapper {
 
  private:
   void snap_where_nothing_meets(const std::vector<bool>& known) {
-    const Draft before = draft_;
+    const ComplexDraft before = draft_;
     snap_near_features(draft_, reach_, SnapWhat::corners, work_, known, cancel_);
-    const Draft after = std::move(draft_);
+    const ComplexDraft after = std::move(draft_);
     const Changes changes(before, after);
     std::vector<bool> taken_back(changes.places(), false);
     draft_ = without_what_meets(changes, taken_back);
   }
 
-  Draft& draft_;
+  ComplexDraft& draft_;
   double reach_;
   bool pausing_ = false;
   Work* work_;
@@ -512,7 +512,7 @@ class GrainSnapper {
 
 }  // namespace
 
-void unify_equal_points(Draft& draft) {
+void unify_equal_points(ComplexDraft& draft) {
   std::vector<Index> order(draft.points.size()), merged(draft.points.size());
   std::iota(order.begin(), order.end(), Index{0});
   const auto key = [&](Index p) {
@@ -541,12 +541,13 @@ void unify_equal_points(Draft& draft) {
   for (Index& p : draft.loose_points) p = merged[p];
 }
 
-ArrangementReport arrange(Draft& draft, double grain, Work* work, bool cancel_twins, KeptMerges kept) {
+ArrangementReport arrange(ComplexDraft& draft, double grain, Work* work, bool cancel_duplicates,
+                          KeptMerges kept) {
   ArrangementReport report;
   constexpr std::size_t few = 1000;
   Settled settled;
-  GrainSnapper snapper(draft, grain, work, cancel_twins, kept);
-  std::optional<Draft> clean_before;
+  GrainSnapper snapper(draft, grain, work, cancel_duplicates, kept);
+  std::optional<ComplexDraft> clean_before;
   for (std::size_t fewest = none;; ++report.rounds) {
     unify_equal_points(draft);
     remove_collinear_triangles(draft);

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "facets/draft.h"
+#include "facets/complex_draft.h"
 #include "repair/work.h"
 
 namespace collarmesh::repairing {
@@ -30,13 +30,13 @@ enum class KeptMerges {
 /// that merges cause are cut in further rounds. Merges that undid cuts are tried once more at the end, and
 /// undone if they undo cuts again. Triangles that cover each other become copies of one triangle: copies
 /// stay, because their orientations tell what is inside. Only opposite copies that result from merging cancel
-/// each other, and none do if `cancel_twins` is false. Throws WorkStopped; the draft is then unusable. Pieces
-/// keep their triangle's origin, except `Origin::facet`, which is renumbered. Cost: O(n log n), and for k
-/// intersecting pairs O(k log k) exact constructions.
-ArrangementReport arrange(facets::Draft& draft, double grain, Work* work = nullptr, bool cancel_twins = true,
-                          KeptMerges kept = KeptMerges::all);
+/// each other, and none do if `cancel_duplicates` is false. Throws WorkStopped; the draft is then unusable.
+/// Pieces keep their triangle's origin, except `Origin::facet`, which is renumbered. Cost: O(n log n), and
+/// for k intersecting pairs O(k log k) exact constructions.
+ArrangementReport arrange(facets::ComplexDraft& draft, double grain, Work* work = nullptr,
+                          bool cancel_duplicates = true, KeptMerges kept = KeptMerges::all);
 
 /// Merges points with equal coordinates, and drops triangles and segments that thereby lose a corner.
-void unify_equal_points(facets::Draft& draft);
+void unify_equal_points(facets::ComplexDraft& draft);
 
 }  // namespace collarmesh::repairing

@@ -21,7 +21,7 @@ struct FlatFacet {
 /// The flattening along one axis.
 class AxisFlattener {
  public:
-  AxisFlattener(Draft& draft, std::size_t axis, double tolerance, FlattenReport& report)
+  AxisFlattener(ComplexDraft& draft, std::size_t axis, double tolerance, FlattenReport& report)
       : draft_(draft), axis_(axis), tolerance_(tolerance), report_(report) {}
 
   void run(std::vector<bool> stays) {
@@ -88,7 +88,7 @@ class AxisFlattener {
     return std::ranges::max_element(area, {}, [](const auto& each) { return each.second; })->first;
   }
 
-  Draft& draft_;
+  ComplexDraft& draft_;
   std::size_t axis_;
   double tolerance_;
   FlattenReport& report_;
@@ -96,7 +96,7 @@ class AxisFlattener {
 
 }  // namespace
 
-FlattenReport flatten_axis_planes(Draft& draft, double tolerance) {
+FlattenReport flatten_axis_planes(ComplexDraft& draft, double tolerance) {
   FlattenReport report;
   std::vector<bool> stays(draft.points.size(), false);
   for (const Index p : draft.loose_points) stays[p] = true;

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "facets/draft.h"
+#include "facets/complex_draft.h"
 
 namespace collarmesh::repairing {
 
@@ -20,6 +20,6 @@ struct FlattenReport {
 /// there are cut exactly. Facets count as perpendicular if they are flat within 1e-7 of the diagonal. Points
 /// that the input gives as vertices stay, and so do soups that are thinner than the tolerance. Cost: O(n log
 /// n).
-FlattenReport flatten_axis_planes(facets::Draft& draft, double tolerance);
+FlattenReport flatten_axis_planes(facets::ComplexDraft& draft, double tolerance);
 
 }  // namespace collarmesh::repairing

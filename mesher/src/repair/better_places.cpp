@@ -15,7 +15,7 @@ using namespace facets;
 
 // Returns for each place (connected changed triangles, see `Changes`) the sum of the costs of the troubles to
 // which it is the nearest place, within `reach`.
-std::vector<double> costs(const Draft& draft, const std::vector<Index>& place_of, Index places,
+std::vector<double> costs(const ComplexDraft& draft, const std::vector<Index>& place_of, Index places,
                           const std::vector<Trouble>& troubles, double reach) {
   std::vector<double> cost(places, 0);
   std::vector<std::array<Point, 3>> triangles;
@@ -36,8 +36,9 @@ std::vector<double> costs(const Draft& draft, const std::vector<Index>& place_of
 
 }  // namespace
 
-BetterPlaces better_places(const Draft& before, const std::vector<Trouble>& troubles_before,
-                           const Draft& after, const std::vector<Trouble>& troubles_after, double reach) {
+BetterPlaces better_places(const ComplexDraft& before, const std::vector<Trouble>& troubles_before,
+                           const ComplexDraft& after, const std::vector<Trouble>& troubles_after,
+                           double reach) {
   const Changes changes(before, after);
   const std::vector<double> cost_before =
       costs(before, changes.place_of_gone(), changes.places(), troubles_before, reach);

@@ -2,14 +2,14 @@
 
 #include <vector>
 
-#include "facets/draft.h"
+#include "facets/complex_draft.h"
 #include "repair/noise.h"
 
 namespace collarmesh::repairing {
 
 /// The result of `better_places`.
 struct BetterPlaces {
-  facets::Draft draft;
+  facets::ComplexDraft draft;
   Index places = 0;               ///< number of places where the states differ
   std::vector<Point> taken_back;  ///< a point in each place that was restored
 };
@@ -18,8 +18,8 @@ struct BetterPlaces {
 /// before, and places that would intersect restored ones. The troubles are those of the complexes of both
 /// states. Each is charged to the place of the nearest changed triangle, within `reach` (absolute).
 /// Precondition: as for `Changes`. Cost: O(n log n).
-BetterPlaces better_places(const facets::Draft& before, const std::vector<Trouble>& troubles_before,
-                           const facets::Draft& after, const std::vector<Trouble>& troubles_after,
+BetterPlaces better_places(const facets::ComplexDraft& before, const std::vector<Trouble>& troubles_before,
+                           const facets::ComplexDraft& after, const std::vector<Trouble>& troubles_after,
                            double reach);
 
 }  // namespace collarmesh::repairing

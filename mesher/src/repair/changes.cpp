@@ -27,7 +27,7 @@ struct CellKey {
   auto identity() const { return std::tie(corners, soup, tag); }
 };
 
-std::vector<CellKey> sorted_keys(const Draft& draft) {
+std::vector<CellKey> sorted_keys(const ComplexDraft& draft) {
   std::vector<CellKey> keys;
   keys.reserve(draft.triangles.size());
   for (Index t = 0; t < draft.triangles.size(); ++t) {
@@ -54,7 +54,7 @@ bool in_order(const Segment& s, const Segment& t) {
 
 // Returns the places whose triangles meet other triangles. Triangles outside of all places are not compared
 // with each other.
-std::vector<Index> places_that_meet(Draft draft, const std::vector<Index>& place) {
+std::vector<Index> places_that_meet(ComplexDraft draft, const std::vector<Index>& place) {
   for (Index t = 0; t < draft.origins.size(); ++t) draft.origins[t].facet = t;
   const EdgeTable edges(draft.triangles, draft.points.size());
   const Simplices simplices(draft, edges);
@@ -69,7 +69,7 @@ std::vector<Index> places_that_meet(Draft draft, const std::vector<Index>& place
 
 }  // namespace
 
-Changes::Changes(const Draft& before, const Draft& after) : before_(before), after_(after) {
+Changes::Changes(const ComplexDraft& before, const ComplexDraft& after) : before_(before), after_(after) {
   assert(before.points.size() <= after.points.size() &&
          std::equal(before.points.begin(), before.points.end(), after.points.begin()));
   match();
@@ -124,12 +124,12 @@ Index Changes::place_at(Index a, Index b) const {
   return found == edges_.end() || found->first != edge ? none : found->second;
 }
 
-Draft Changes::without(const std::vector<bool>& taken_back, std::vector<Index>& place) const {
-  Draft mixed = after_;
+ComplexDraft Changes::without(const std::vector<bool>& taken_back, std::vector<Index>& place) const {
+  ComplexDraft mixed = after_;
   mixed.triangles.clear();
   mixed.origins.clear();
   place.clear();
-  const auto add = [&](const Draft& from, const std::vector<Index>& of, bool only_changed, bool back) {
+  const auto add = [&](const ComplexDraft& from, const std::vector<Index>& of, bool only_changed, bool back) {
     for (Index t = 0; t < of.size(); ++t) {
       if (of[t] == none ? only_changed : taken_back[of[t]] != back) continue;
       mixed.add_triangle(from.triangles[t], from.origins[t]);
@@ -145,7 +145,7 @@ Draft Changes::without(const std::vector<bool>& taken_back, std::vector<Index>& 
 
 // Combines the segments of both states: a segment that only one state has belongs to the place of the
 // triangles at it.
-void Changes::mix_segments(const std::vector<bool>& taken_back, Draft& mixed) const {
+void Changes::mix_segments(const std::vector<bool>& taken_back, ComplexDraft& mixed) const {
   std::vector<Segment> before = before_.segments, after = after_.segments;
   std::sort(before.begin(), before.end(), in_order);
   std::sort(after.begin(), after.end(), in_order);
@@ -166,7 +166,7 @@ void Changes::mix_segments(const std::vector<bool>& taken_back, Draft& mixed) co
   mixed.segments.erase(std::unique(mixed.segments.begin(), mixed.segments.end(), same), mixed.segments.end());
 }
 
-void Changes::mix_loose_points(const std::vector<bool>& taken_back, Draft& mixed) const {
+void Changes::mix_loose_points(const std::vector<bool>& taken_back, ComplexDraft& mixed) const {
   std::vector<Index> place_at_point(before_.points.size(), none);
   for (Index t = 0; t < of_gone_.size(); ++t)
     if (of_gone_[t] != none)
@@ -177,11 +177,11 @@ void Changes::mix_loose_points(const std::vector<bool>& taken_back, Draft& mixed
   }
 }
 
-Draft without_what_meets(const Changes& changes, std::vector<bool>& taken_back) {
+ComplexDraft without_what_meets(const Changes& changes, std::vector<bool>& taken_back) {
   constexpr unsigned most_rounds = 8;
   for (unsigned round = 0;; ++round) {
     std::vector<Index> place;
-    Draft draft = changes.without(taken_back, place);
+    ComplexDraft draft = changes.without(taken_back, place);
     if (std::find(taken_back.begin(), taken_back.end(), true) == taken_back.end() && round > 0) return draft;
     const std::vector<bool> before_round = taken_back;
     for (const Index p : places_that_meet(draft, place)) taken_back[p] = true;

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "facets/draft.h"
+#include "facets/complex_draft.h"
 
 namespace collarmesh::repairing {
 
@@ -12,7 +12,7 @@ class Changes {
  public:
   /// Keeps references to both arguments. Precondition: the later state has the points of the earlier one,
   /// with the same numbers. Cost: O(n log n).
-  Changes(const facets::Draft& before, const facets::Draft& after);
+  Changes(const facets::ComplexDraft& before, const facets::ComplexDraft& after);
 
   Index places() const { return places_; }
   /// Return the place of each triangle of the earlier or the later state; none: both states have it.
@@ -21,16 +21,16 @@ class Changes {
 
   /// Returns the later state with the changes at some places undone. Sets `place` to the place of each
   /// triangle; none: both states have it.
-  facets::Draft without(const std::vector<bool>& taken_back, std::vector<Index>& place) const;
+  facets::ComplexDraft without(const std::vector<bool>& taken_back, std::vector<Index>& place) const;
 
  private:
   void match();
   void find_places();
   Index place_at(Index a, Index b) const;
-  void mix_segments(const std::vector<bool>& taken_back, facets::Draft& mixed) const;
-  void mix_loose_points(const std::vector<bool>& taken_back, facets::Draft& mixed) const;
+  void mix_segments(const std::vector<bool>& taken_back, facets::ComplexDraft& mixed) const;
+  void mix_loose_points(const std::vector<bool>& taken_back, facets::ComplexDraft& mixed) const;
 
-  const facets::Draft &before_, &after_;
+  const facets::ComplexDraft &before_, &after_;
   std::vector<Index> of_gone_, of_come_;
   std::vector<std::pair<std::array<Index, 2>, Index>> edges_;  // edges of changed triangles, and their
                                                                // places; sorted
@@ -40,6 +40,6 @@ class Changes {
 /// Returns the later state without the changes at the places in `taken_back` and at all other places whose
 /// facets would meet other facets outside of common edges and corners; adds these places to `taken_back`.
 /// Facets that meet in the earlier state may remain. Cost: O(n log n) for each of at most a few rounds.
-facets::Draft without_what_meets(const Changes& changes, std::vector<bool>& taken_back);
+facets::ComplexDraft without_what_meets(const Changes& changes, std::vector<bool>& taken_back);
 
 }  // namespace collarmesh::repairing

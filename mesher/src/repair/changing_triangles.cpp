@@ -8,7 +8,7 @@ namespace collarmesh::repairing {
 
 using namespace facets;
 
-ChangingTriangles::ChangingTriangles(Draft& draft, double reach, Work& work)
+ChangingTriangles::ChangingTriangles(ComplexDraft& draft, double reach, Work& work)
     : draft_(draft), reach_(reach), work_(work), frame_(draft.points, draft.triangles) {
   alive_.assign(draft.triangles.size(), true);
   count_ = draft.triangles.size();
@@ -137,8 +137,8 @@ bool ChangingTriangles::beyond(Index s, Index t) const {
   return low > reach_ || high < -reach_;
 }
 
-Draft ChangingTriangles::compacted() const {
-  Draft result = draft_;
+ComplexDraft ChangingTriangles::compacted() const {
+  ComplexDraft result = draft_;
   std::size_t kept = 0;
   for (Index t = 0; t < alive_.size(); ++t) {
     if (!alive_[t]) continue;

@@ -9,7 +9,7 @@
 
 #include "common/box_frame.h"
 #include "common/box_tree.h"
-#include "facets/draft.h"
+#include "facets/complex_draft.h"
 #include "repair/item_trees.h"
 #include "repair/polygon_cutter.h"
 #include "repair/work.h"
@@ -25,7 +25,7 @@ class ChangingTriangles {
   /// Makes the lists of sides. Two triangles are near each other if each comes within `reach` (absolute) of
   /// the plane of the other, and if their boxes meet. Boxes are parallel to the axes of a frame, and enlarged
   /// by half of `reach` on all sides. Each visited pair of boxes that meet costs a unit of `work`.
-  ChangingTriangles(facets::Draft& draft, double reach, Work& work);
+  ChangingTriangles(facets::ComplexDraft& draft, double reach, Work& work);
 
   /// Returns the number of triangles.
   std::size_t count() const { return count_; }
@@ -129,7 +129,7 @@ class ChangingTriangles {
   }
 
   /// Returns the draft without gaps: triangles keep their order, but get new numbers.
-  facets::Draft compacted() const;
+  facets::ComplexDraft compacted() const;
 
   /// For assertions and tests: returns whether the lists at these points contain sides of existing triangles
   /// only, and the right number of them.
@@ -152,7 +152,7 @@ class ChangingTriangles {
   bool beyond(Index s, Index t) const;
   void link(Index triangle);
 
-  facets::Draft& draft_;
+  facets::ComplexDraft& draft_;
   double reach_;
   Work& work_;
   const BoxFrame frame_;                                        // axes of the boxes

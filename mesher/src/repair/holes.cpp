@@ -25,7 +25,7 @@ struct OpenEdges {
   std::map<Index, std::vector<std::array<Index, 3>>> of_soup;  // from, to, a triangle there
 };
 
-OpenEdges find_open_edges(const Draft& draft) {
+OpenEdges find_open_edges(const ComplexDraft& draft) {
   OpenEdges open;
   const EdgeTable edges(draft.triangles, draft.points.size());
   std::vector<std::pair<Index, int>> balance;  // soup, and number of uses in ascending minus descending
@@ -54,7 +54,7 @@ OpenEdges find_open_edges(const Draft& draft) {
 }
 
 // Compares points by coordinates, so that the result does not depend on the order of points and facets.
-bool comes_before(const Draft& draft, Index p, Index q) {
+bool comes_before(const ComplexDraft& draft, Index p, Index q) {
   const Point &a = draft.points[p], &b = draft.points[q];
   return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
 }
@@ -62,7 +62,7 @@ bool comes_before(const Draft& draft, Index p, Index q) {
 using Loop = std::vector<std::array<Index, 3>>;
 
 // Rotates the loop so that it starts at the first of its points by `comes_before`.
-void start_first(const Draft& draft, Loop& loop) {
+void start_first(const ComplexDraft& draft, Loop& loop) {
   const auto first = std::min_element(loop.begin(), loop.end(), [&](const auto& e, const auto& f) {
     return comes_before(draft, e[0], f[0]);
   });
@@ -71,7 +71,7 @@ void start_first(const Draft& draft, Loop& loop) {
 
 // Finds closed curves of directed edges, and separates curves that meet in a point. The edges are ordered by
 // coordinates, so the curves and their starts do not depend on the order of the facets.
-std::vector<Loop> find_loops(const Draft& draft, std::vector<std::array<Index, 3>> edges) {
+std::vector<Loop> find_loops(const ComplexDraft& draft, std::vector<std::array<Index, 3>> edges) {
   std::sort(edges.begin(), edges.end(), [&](const auto& e, const auto& f) {
     if (comes_before(draft, e[0], f[0])) return true;
     return !comes_before(draft, f[0], e[0]) && comes_before(draft, e[1], f[1]);
@@ -109,7 +109,7 @@ std::vector<Loop> find_loops(const Draft& draft, std::vector<std::array<Index, 3
 // The area of the surface that each triangle belongs to.
 class SurfaceAreas {
  public:
-  explicit SurfaceAreas(const Draft& draft) : sets_(draft.triangles.size()) {
+  explicit SurfaceAreas(const ComplexDraft& draft) : sets_(draft.triangles.size()) {
     const EdgeTable edges(draft.triangles, draft.points.size());
     for (Index e = 0; e < edges.size(); ++e)
       for (const Index side : edges.sides(e)) sets_.unite(side / 3, edges.sides(e)[0] / 3);
@@ -124,7 +124,7 @@ class SurfaceAreas {
 };
 
 // Returns a lower bound on the area of surfaces with this border: the length of the border's area vector.
-double least_area(const Draft& draft, const Loop& loop) {
+double least_area(const ComplexDraft& draft, const Loop& loop) {
   const Point& origin = draft.points[loop[0][0]];
   Vector twice{};
   for (const auto& edge : loop)
@@ -132,7 +132,7 @@ double least_area(const Draft& draft, const Loop& loop) {
   return 0.5 * norm(twice);
 }
 
-std::vector<Corners> triangulate(const Draft& draft, const Loop& loop) {
+std::vector<Corners> triangulate(const ComplexDraft& draft, const Loop& loop) {
   // The hole's triangles use the edges around it in the opposite direction.
   std::vector<Index> corners;
   corners.reserve(loop.size());
@@ -168,13 +168,13 @@ std::vector<Corners> triangulate(const Draft& draft, const Loop& loop) {
 
 }  // namespace
 
-std::size_t count_open_edges(const Draft& draft) {
+std::size_t count_open_edges(const ComplexDraft& draft) {
   std::size_t count = 0;
   for (const auto& [soup, edges] : find_open_edges(draft).of_soup) count += edges.size();
   return count;
 }
 
-std::vector<FilledHole> fill_holes(Draft& draft, Tag first_tag, Work* work, double largest_share) {
+std::vector<FilledHole> fill_holes(ComplexDraft& draft, Tag first_tag, Work* work, double largest_share) {
   std::vector<FilledHole> filled;
   const OpenEdges open = find_open_edges(draft);
   if (open.of_soup.empty()) return filled;

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "collarmesh/repair.h"
-#include "facets/draft.h"
+#include "facets/complex_draft.h"
 #include "repair/work.h"
 
 namespace collarmesh::repairing {
@@ -15,11 +15,11 @@ namespace collarmesh::repairing {
 /// if its filling would need more than `largest_share` of the area of the surface around it. Neither holes
 /// nor tags depend on the order of points and facets. Throws WorkStopped; the draft is then unusable. Cost:
 /// for a hole of k edges O(k^2) in practice.
-std::vector<FilledHole> fill_holes(facets::Draft& draft, Tag first_tag, Work* work = nullptr,
+std::vector<FilledHole> fill_holes(facets::ComplexDraft& draft, Tag first_tag, Work* work = nullptr,
                                    double largest_share = 0.6);
 
 /// Returns the number of edges that only one triangle of a soup has (more precisely: edges that the soup uses
 /// more often in one direction than in the other).
-std::size_t count_open_edges(const facets::Draft& draft);
+std::size_t count_open_edges(const facets::ComplexDraft& draft);
 
 }  // namespace collarmesh::repairing

@@ -21,10 +21,10 @@ using namespace facets;
 constexpr std::size_t most_asked =
     3;  // number of triangles of a shell, a patch or a component at which the winding number is computed
 
-Point centroid(const Draft& draft, const Corners& t) {
+Point centroid(const ComplexDraft& draft, const Corners& t) {
   return (1.0 / 3) * (draft.points[t[0]] + draft.points[t[1]] + draft.points[t[2]]);
 }
-std::array<Point, 3> corner_points(const Draft& draft, const Corners& t) {
+std::array<Point, 3> corner_points(const ComplexDraft& draft, const Corners& t) {
   return {draft.points[t[0]], draft.points[t[1]], draft.points[t[2]]};
 }
 
@@ -65,11 +65,11 @@ struct Sheets {
     Index triangle;
     int sign;  // -1: opposite to the sheet
   };
-  Draft unique;  // one triangle for each sheet
+  ComplexDraft unique;  // one triangle for each sheet
   std::vector<Index> first_copy{0};
   std::vector<Copy> copies;
 
-  explicit Sheets(const Draft& draft) {
+  explicit Sheets(const ComplexDraft& draft) {
     unique.points = draft.points;
     std::vector<std::pair<Corners, Index>> order;
     order.reserve(draft.triangles.size());
@@ -98,7 +98,7 @@ struct Sheets {
 
 class BoundaryKeeper {
  public:
-  BoundaryKeeper(Draft& draft, double thickness)
+  BoundaryKeeper(ComplexDraft& draft, double thickness)
       : draft_(draft),
         thickness_(thickness),
         sheets_(draft),
@@ -292,20 +292,20 @@ class BoundaryKeeper {
     });
   }
 
-  // The space that a shell encloses.
-  struct Chamber {
+  // A component of space without the triangles that is thinner than `thickness`.
+  struct ThinChamber {
     Point origin;
     double volume = 0, area = 0;
     std::vector<std::pair<Index, double>> neighbours;  // shells on the other side, and the common area
   };
 
-  std::map<Index, Chamber> thin_chambers() const {
-    std::map<Index, Chamber> chambers;
+  std::map<Index, ThinChamber> thin_chambers() const {
+    std::map<Index, ThinChamber> chambers;
     for (Index side = 0; side < shell_.size(); ++side) {
       if (!tangled_[side / 2]) continue;
       const auto p = corner_points(draft_, sheets_.unique.triangles[side / 2]);
       const auto [at, added] = chambers.try_emplace(shell_[side]);
-      Chamber& chamber = at->second;
+      ThinChamber& chamber = at->second;
       if (added) chamber.origin = p[0];
       const double area = 0.5 * norm(cross(p[1] - p[0], p[2] - p[0]));
       chamber.volume +=
@@ -314,7 +314,7 @@ class BoundaryKeeper {
       if (shell_[side ^ 1U] != shell_[side]) chamber.neighbours.emplace_back(shell_[side ^ 1U], area);
     }
     std::erase_if(chambers, [&](const auto& entry) {
-      const Chamber& c = entry.second;
+      const ThinChamber& c = entry.second;
       return c.volume < 0 || 2 * c.volume > thickness_ * c.area || c.neighbours.empty();
     });
     return chambers;
@@ -323,7 +323,7 @@ class BoundaryKeeper {
   // Gives each thin chamber the label with which it has the largest common area, beginning beside thick
   // chambers.
   void give_away_thin_chambers() {
-    std::map<Index, Chamber> left = thin_chambers();
+    std::map<Index, ThinChamber> left = thin_chambers();
     while (!left.empty()) {
       std::vector<std::pair<Index, Index>> labelled;
       for (const auto& [shell, chamber] : left) {
@@ -393,7 +393,7 @@ class BoundaryKeeper {
     return origin(sheets_.of(sheet)[0]);
   }
 
-  Draft& draft_;
+  ComplexDraft& draft_;
   double thickness_;
   Sheets sheets_;
   EdgeTable edges_;            // edges of the sheets
@@ -412,7 +412,7 @@ struct Components {
   std::map<Index, std::vector<Index>> triangles;
   std::map<Index, bool> closed;
 
-  explicit Components(const Draft& draft) {
+  explicit Components(const ComplexDraft& draft) {
     const EdgeTable edges(draft.triangles, draft.points.size());
     DisjointSets sets(draft.triangles.size());
     std::vector<bool> open(draft.triangles.size(), false);
@@ -441,7 +441,7 @@ struct Components {
 
 }  // namespace
 
-bool peels_away(const Draft& draft) {
+bool peels_away(const ComplexDraft& draft) {
   const EdgeTable edges(draft.triangles, draft.points.size());
   std::vector<std::size_t> left(edges.size());  // number of triangles that remain at the edge
   std::vector<bool> gone(draft.triangles.size(), false);
@@ -466,7 +466,7 @@ bool peels_away(const Draft& draft) {
   return count == draft.triangles.size();
 }
 
-TurnReport turn_components(Draft& draft) {
+TurnReport turn_components(ComplexDraft& draft) {
   TurnReport report;
   const Components components(draft);
   std::map<Index, std::vector<WeightedTriangle>> by_soup;
@@ -503,7 +503,7 @@ TurnReport turn_components(Draft& draft) {
   return report;
 }
 
-FlakeReport drop_flakes(Draft& draft, double thickness) {
+FlakeReport drop_flakes(ComplexDraft& draft, double thickness) {
   constexpr double most_of_all = 1e-3;  // share of the total volume
   FlakeReport report;
   const Components components(draft);
@@ -545,7 +545,7 @@ FlakeReport drop_flakes(Draft& draft, double thickness) {
   return report;
 }
 
-InsideReport keep_boundaries(Draft& draft, double thickness) {
+InsideReport keep_boundaries(ComplexDraft& draft, double thickness) {
   return BoundaryKeeper(draft, thickness).run();
 }
 

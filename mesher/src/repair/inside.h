@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "facets/draft.h"
+#include "facets/complex_draft.h"
 
 namespace collarmesh::repairing {
 
@@ -11,7 +11,7 @@ namespace collarmesh::repairing {
 /// common edges and corners, or are copies of each other. Repeatedly removes triangles with an edge that no
 /// other triangle has. If no triangle is left, they enclose nothing, because closed surfaces have no such
 /// edge; the converse is not tested. Cost: O(n).
-bool peels_away(const facets::Draft& draft);
+bool peels_away(const facets::ComplexDraft& draft);
 
 /// The result of `turn_components`.
 struct TurnReport {
@@ -22,7 +22,7 @@ struct TurnReport {
 /// Reverses closed components of surfaces whose orientation contradicts the rest: components that are
 /// oriented inwards but lie inside nothing, and components inside a reversed one. A component is connected by
 /// edges that two triangles of one soup share. Cost: O(n log n).
-TurnReport turn_components(facets::Draft& draft);
+TurnReport turn_components(facets::ComplexDraft& draft);
 
 /// The result of `drop_flakes`.
 struct FlakeReport {
@@ -33,7 +33,7 @@ struct FlakeReport {
 /// Drops closed components thinner than `thickness` (absolute: twice the volume divided by the area) whose
 /// share of the total volume is tiny. Components are those of `turn_components`; components of complexes
 /// stay. Cost: O(n log n).
-FlakeReport drop_flakes(facets::Draft& draft, double thickness);
+FlakeReport drop_flakes(facets::ComplexDraft& draft, double thickness);
 
 /// The result of `keep_boundaries`.
 struct InsideReport {
@@ -52,10 +52,10 @@ struct InsideReport {
 /// number of its surface is above 1/2 there; if it is inside several soups, the first one counts. Each soup
 /// then has the boundary of its part of space, oriented outwards; triangles between two soups have a copy for
 /// each. Components stay as they are if each of their edges has two triangles of one soup with consistent
-/// orientation; so do the facets of complexes. A chamber thinner than `thickness` (absolute: twice its volume
-/// divided by its area) becomes part of the neighbour with the largest common area; many such chambers lie
-/// between sheets that nearly coincide. Precondition: triangles only meet in common edges and corners, or are
-/// copies of each other. Cost: O(n log n).
-InsideReport keep_boundaries(facets::Draft& draft, double thickness);
+/// orientation; so do the facets of complexes. A chamber (a component of space without the triangles) thinner
+/// than `thickness` (absolute: twice its volume divided by its area) becomes part of the neighbour with the
+/// largest common area; many such chambers lie between sheets that nearly coincide. Precondition: triangles
+/// only meet in common edges and corners, or are copies of each other. Cost: O(n log n).
+InsideReport keep_boundaries(facets::ComplexDraft& draft, double thickness);
 
 }  // namespace collarmesh::repairing

@@ -13,7 +13,7 @@
 #include "collarmesh/noise.h"
 #include "facets/box_around.h"
 #include "facets/cleanup.h"
-#include "facets/draft.h"
+#include "facets/complex_draft.h"
 #include "facets/edges.h"
 #include "facets/facet_triangulation.h"
 #include "facets/faults.h"
@@ -25,6 +25,7 @@
 #include "repair/better_places.h"
 #include "repair/changes.h"
 #include "repair/distances.h"
+#include "repair/duplicate_triangles.h"
 #include "repair/holes.h"
 #include "repair/inside.h"
 #include "repair/most_places.h"
@@ -33,7 +34,6 @@
 #include "repair/small_features.h"
 #include "repair/snapping.h"
 #include "repair/to_soups.h"
-#include "repair/twins.h"
 #include "repair/work.h"
 #include "repair/wrap.h"
 
@@ -110,7 +110,7 @@ class Repairer {
       const std::vector<CollapsedFeature> collapsed =
           collapse_in_draft(draft_, complex.plc, size, options_, work_);
       if (collapsed.empty()) return finished();
-      const Draft after = draft_;
+      const ComplexDraft after = draft_;
       if (!cut_and_keep() || encloses_nothing_) {
         const Changes changes(valid.draft, after);
         std::vector<bool> taken_back(changes.places(), false);
@@ -228,7 +228,7 @@ class Repairer {
     for (const double factor : {1.0, 10.0, 100.0}) {
       const double width = factor * tolerance_;
       if (open == 0 || (factor > 1 && width > widest_stitch * draft_.bounds.diagonal())) break;
-      Draft stitched = draft_;
+      ComplexDraft stitched = draft_;
       const SnapReport snapped = snap_near_features(stitched, width, SnapWhat::borders, &work_);
       const std::size_t left = count_open_edges(stitched);
       if (left >= open) continue;
@@ -262,7 +262,7 @@ class Repairer {
 
   /// The state of the draft. Once it is clean, steps must keep it clean.
   struct State {
-    Draft draft;
+    ComplexDraft draft;
     RepairReport report;
   };
   State state() const { return {draft_, report_}; }
@@ -360,7 +360,7 @@ class Repairer {
     add_places(report_.kept, better.taken_back.size(), 0, better.taken_back);
   }
 
-  std::optional<Plc> complex_of(const Draft& draft) const {
+  std::optional<Plc> complex_of(const ComplexDraft& draft) const {
     PlcOptions options = complex_;
     options.require_solid = false;
     try {
@@ -373,7 +373,7 @@ class Repairer {
   // Cuts facets that nearly coincide. Rounding their cuts would make ever more intersections, so they are
   // first snapped together, within the smallest distance that helps.
   bool cut_what_nearly_coincides() {
-    const Draft before = draft_;
+    const ComplexDraft before = draft_;
     const RepairReport report_before = report_;
     if (cut_and_keep()) return true;
     draft_ = before;
@@ -399,7 +399,7 @@ class Repairer {
     const ArrangementReport arranged = arrange(draft_, grain * tolerance_, &work_, !two_sided, merges);
     if (report_.cut.count == 0) add_places(report_.cut, arranged.intersecting_pairs, 0, arranged.places);
     if (!arranged.clean) return false;
-    if (of_ == Of::sheets) {  // of triangles that cover each other, one stays
+    if (of_ == Of::sheets) {  // one of several triangles that cover each other stays
       drop_repeated(draft_);
       return true;
     }
@@ -408,7 +408,7 @@ class Repairer {
     if (encloses_nothing_) return true;
     double area = 0;
     for (const Corners& t : draft_.triangles) area += area_of(draft_, t);
-    cancel_twins(draft_);
+    cancel_duplicates(draft_);
     const InsideReport kept = keep_boundaries(draft_, tolerance_);
     encloses_nothing_ = kept.dropped_area > most_in_open_sheets * area;
     report_.merged.count += kept.removed_triangles;
@@ -440,7 +440,7 @@ class Repairer {
   const RepairOptions& options_;
   const PlcOptions& complex_;
   Of of_;
-  Draft draft_;
+  ComplexDraft draft_;
   std::vector<CornerPoints> input_triangles_;
   double tolerance_ = 0;  // absolute; the tolerance that is used
   Index first_new_point_ = none;

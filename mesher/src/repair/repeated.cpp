@@ -16,7 +16,7 @@ namespace {
 using namespace facets;
 
 // Returns for each triangle whether it is a copy of an earlier one of its soup.
-std::vector<bool> find_copies(const Draft& draft) {
+std::vector<bool> find_copies(const ComplexDraft& draft) {
   struct Key {
     Corners corners;
     Index soup;
@@ -44,7 +44,7 @@ std::vector<bool> find_copies(const Draft& draft) {
 // Groups of copies connected by edges. Finds for each group whether dropping it leaves the surface more open.
 class CopyGroups {
  public:
-  CopyGroups(const Draft& draft, const std::vector<bool>& copy) : sets_(draft.triangles.size()) {
+  CopyGroups(const ComplexDraft& draft, const std::vector<bool>& copy) : sets_(draft.triangles.size()) {
     const EdgeTable edges(draft.triangles, draft.points.size());
     std::vector<Index> copies;
     for (Index e = 0; e < edges.size(); ++e) {
@@ -60,7 +60,7 @@ class CopyGroups {
   bool opens(Index triangle) { return change_[sets_.find(triangle)] >= 0; }
 
  private:
-  void add_edge(const Draft& draft, const std::vector<bool>& copy, const EdgeTable& edges, Index e) {
+  void add_edge(const ComplexDraft& draft, const std::vector<bool>& copy, const EdgeTable& edges, Index e) {
     struct Sum {
       int before = 0, of_copies = 0;
       Index group = none;
@@ -85,7 +85,7 @@ class CopyGroups {
 
 }  // namespace
 
-RepeatedReport drop_repeated(Draft& draft) {
+RepeatedReport drop_repeated(ComplexDraft& draft) {
   RepeatedReport report;
   const std::vector<bool> copy = find_copies(draft);
   if (std::none_of(copy.begin(), copy.end(), [](bool c) { return c; })) return report;

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "facets/draft.h"
+#include "facets/complex_draft.h"
 
 namespace collarmesh::repairing {
 
@@ -15,6 +15,6 @@ struct RepeatedReport {
 /// Drops duplicate triangles. Keeps one of the triangles of a soup with the same corners and orientation,
 /// unless that opens the surface (two solids may share a facet); in complexes keeps one regardless of
 /// orientation. Cost: O(n log n).
-RepeatedReport drop_repeated(facets::Draft& draft);
+RepeatedReport drop_repeated(facets::ComplexDraft& draft);
 
 }  // namespace collarmesh::repairing

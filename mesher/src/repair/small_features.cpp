@@ -42,7 +42,7 @@ struct Needle {
   double height = 0;
 };
 
-Needle needle_of(const Draft& draft, const Corners& c) {
+Needle needle_of(const ComplexDraft& draft, const Corners& c) {
   Needle needle;
   std::array<double, 3> lengths{};
   for (unsigned i = 0; i < 3; ++i) lengths[i] = distance(draft.points[c[i]], draft.points[c[(i + 1) % 3]]);
@@ -58,7 +58,7 @@ Needle needle_of(const Draft& draft, const Corners& c) {
 /// The patches and curves of a complex that are small and may be collapsed.
 class SmallOnes {
  public:
-  SmallOnes(const Plc& plc, const Draft& draft, double size, const RepairOptions& options)
+  SmallOnes(const Plc& plc, const ComplexDraft& draft, double size, const RepairOptions& options)
       : plc_(plc),
         size_(size),
         patches_(plc.patches.size()),
@@ -122,7 +122,7 @@ class SmallOnes {
   }
 
   // Keeps the patches of a tag if all of them are small, except if the tag is only a number.
-  void keep_groups(const Draft& draft) {
+  void keep_groups(const ComplexDraft& draft) {
     if (plc_.numbered_patches) return;
     std::set<Tag> stay;
     for (Index p = 0; p < patches_.size(); ++p)
@@ -143,7 +143,7 @@ class SmallOnes {
 /// A map from the points of a complex to those of the draft that it was built from.
 class DraftPoints {
  public:
-  DraftPoints(const Plc& plc, const Draft& draft) : of_plc_(plc.points.size(), none) {
+  DraftPoints(const Plc& plc, const ComplexDraft& draft) : of_plc_(plc.points.size(), none) {
     std::map<std::array<double, 3>, Index> at;
     for (const Corners& c : draft.triangles)
       for (const Index p : c) at.emplace(key_of(draft.points[p]), p);
@@ -158,7 +158,7 @@ class DraftPoints {
 
 class FeatureCollapser {
  public:
-  FeatureCollapser(Draft& draft, const Plc& plc, double size, const RepairOptions& options, Work& work)
+  FeatureCollapser(ComplexDraft& draft, const Plc& plc, double size, const RepairOptions& options, Work& work)
       : draft_(draft), plc_(plc), size_(size), state_(draft, size, SnapWhat::all, work, {}), cuts_(state_) {
     const SmallOnes small(plc, draft, size, options);
     const DraftPoints points(plc, draft);
@@ -403,7 +403,7 @@ class FeatureCollapser {
     cuts_.apply();
     rename_edges();
     rename_points(state_, merges_);
-    cancel_new_twins(state_);
+    cancel_new_duplicates(state_);
     return true;
   }
 
@@ -424,7 +424,7 @@ class FeatureCollapser {
   static constexpr int of_fixed = 100'000;     // rank of points that stay
   static constexpr Index in_narrow_patch = 1;  // facet number that marks triangles in narrow patches
 
-  Draft& draft_;
+  ComplexDraft& draft_;
   const Plc& plc_;
   double size_;
   SnapState state_;
@@ -516,12 +516,13 @@ std::vector<Tag> tags_of(const Features& features) {
 
 }  // namespace
 
-std::vector<CollapsedFeature> collapse_in_draft(Draft& draft, const Plc& plc, double size,
+std::vector<CollapsedFeature> collapse_in_draft(ComplexDraft& draft, const Plc& plc, double size,
                                                 const RepairOptions& options, Work& work) {
   return FeatureCollapser(draft, plc, size, options, work).run();
 }
 
-std::vector<SmallFeature> gone_from(const Draft& draft, const std::vector<CollapsedFeature>& features) {
+std::vector<SmallFeature> gone_from(const ComplexDraft& draft,
+                                    const std::vector<CollapsedFeature>& features) {
   std::set<Corners> there;
   for (const Corners& c : draft.triangles) {
     there.insert(sorted(c));

@@ -4,7 +4,7 @@
 
 #include "collarmesh/plc.h"
 #include "collarmesh/repair.h"
-#include "facets/draft.h"
+#include "facets/complex_draft.h"
 #include "repair/work.h"
 
 namespace collarmesh::repairing {
@@ -20,11 +20,11 @@ struct CollapsedFeature {
 /// kept tags, the last patch of a group, and patches around regions thinner than the size. Returns the
 /// features. Corners move by less than the size; surfaces stay closed, but facets may intersect. Cost:
 /// O(n log n).
-std::vector<CollapsedFeature> collapse_in_draft(facets::Draft& draft, const Plc& plc, double size,
+std::vector<CollapsedFeature> collapse_in_draft(facets::ComplexDraft& draft, const Plc& plc, double size,
                                                 const RepairOptions& options, Work& work);
 
 /// Returns the features of which the edge or the triangle is gone.
-std::vector<SmallFeature> gone_from(const facets::Draft& draft,
+std::vector<SmallFeature> gone_from(const facets::ComplexDraft& draft,
                                     const std::vector<CollapsedFeature>& features);
 
 /// Gives the patches and curves of a changed complex the numbers that they had before, if both were numbered

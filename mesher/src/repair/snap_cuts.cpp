@@ -26,7 +26,7 @@ void SnapCuts::add(const Edge& edge, const OnEdge& point, double moved) {
 
 bool SnapCuts::add_if_inside(Index t, Index p) {
   using What = SnapState::Done::What;
-  const Draft& draft = state_.draft();
+  const ComplexDraft& draft = state_.draft();
   const Point &a = draft.corner(t, 0), &b = draft.corner(t, 1), &c = draft.corner(t, 2), &q = at(p);
   const Vector n = cross(b - a, c - a);
   const double nn = squared_norm(n);
@@ -60,7 +60,7 @@ std::size_t SnapCuts::pieces() const {
 }
 
 void SnapCuts::apply() {
-  Draft& draft = state_.draft();
+  ComplexDraft& draft = state_.draft();
   std::vector<Index> affected;
   for (auto& [edge, points] : on_edge_) {
     std::sort(points.begin(), points.end(), [](const OnEdge& a, const OnEdge& b) {
@@ -83,7 +83,7 @@ void SnapCuts::apply() {
 
 void SnapCuts::cut_segments() {
   if (on_edge_.empty()) return;
-  Draft& draft = state_.draft();
+  ComplexDraft& draft = state_.draft();
   std::vector<Segment> segments;
   segments.reserve(draft.segments.size());
   for (const Segment& s : draft.segments) {

@@ -9,7 +9,7 @@ using namespace facets;
 
 PointMerger::PointMerger(SnapState& state, const std::vector<bool>& known)
     : state_(state), grid_(state.draft().points, state.limit()) {
-  const Draft& draft = state.draft();
+  const ComplexDraft& draft = state.draft();
   pinned_.assign(draft.points.size(), false);
   for (const Segment& s : draft.segments) pinned_[s.a] = pinned_[s.b] = true;
   for (const Index p : draft.loose_points) pinned_[p] = true;
@@ -80,7 +80,7 @@ void PointMerger::keep_pinned(const std::vector<std::pair<Index, Index>>& merged
 
 void rename_points(SnapState& state, const std::vector<std::pair<Index, Index>>& merged) {
   if (merged.empty()) return;
-  Draft& draft = state.draft();
+  ComplexDraft& draft = state.draft();
   std::map<Index, Index> name(merged.begin(), merged.end());
   const auto renamed = [&](Index p) {
     const auto found = name.find(p);

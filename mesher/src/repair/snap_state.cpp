@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <utility>
 
-#include "repair/twins.h"
+#include "repair/duplicate_triangles.h"
 
 namespace collarmesh::repairing {
 
 using namespace facets;
 
-SnapState::SnapState(Draft& draft, double limit, SnapWhat what, Work& work, const std::vector<bool>& known)
+SnapState::SnapState(ComplexDraft& draft, double limit, SnapWhat what, Work& work,
+                     const std::vector<bool>& known)
     : draft_(draft),
       limit_(limit),
       what_(what),
@@ -77,23 +78,23 @@ std::vector<bool> SnapState::unseen(By by) const {
   return result;
 }
 
-std::size_t cancel_new_twins(SnapState& state) {
+std::size_t cancel_new_duplicates(SnapState& state) {
   std::size_t cancelled = 0;
-  const Draft& draft = state.draft();
+  const ComplexDraft& draft = state.draft();
   for (const Index t : state.take_added()) {
     if (!state.triangles().alive(t)) continue;
     const Corners& corners = draft.triangles[t];
     const Index soup = draft.origins[t].soup;
-    std::vector<Twin> twins;
+    std::vector<DuplicateTriangle> duplicates;
     const auto has = [](const Corners& c, Index p) { return std::find(c.begin(), c.end(), p) != c.end(); };
     state.triangles().for_each_at(state.triangles().least_busy(corners), [&](Index side) {
       const Corners& c = draft.triangles[side / 3];
       if (draft.origins[side / 3].soup == soup &&
           std::ranges::all_of(corners, [&](Index p) { return has(c, p); }))
-        twins.push_back({is_odd(c), side / 3});
+        duplicates.push_back({is_odd(c), side / 3});
     });
-    for (const Index twin : cancelled_among(std::move(twins), draft.soup_is_complex[soup])) {
-      state.take(twin);
+    for (const Index duplicate : cancelled_among(std::move(duplicates), draft.soup_is_complex[soup])) {
+      state.take(duplicate);
       ++cancelled;
     }
   }

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "facets/draft.h"
+#include "facets/complex_draft.h"
 #include "repair/changing_triangles.h"
 #include "repair/snapping.h"
 #include "repair/work.h"
@@ -29,10 +29,11 @@ class SnapState {
 
   /// Keeps references to the draft and the work. All triangles have to be examined except those that are
   /// `known` (empty: none).
-  SnapState(facets::Draft& draft, double limit, SnapWhat what, Work& work, const std::vector<bool>& known);
+  SnapState(facets::ComplexDraft& draft, double limit, SnapWhat what, Work& work,
+            const std::vector<bool>& known);
 
-  facets::Draft& draft() { return draft_; }
-  const facets::Draft& draft() const { return draft_; }
+  facets::ComplexDraft& draft() { return draft_; }
+  const facets::ComplexDraft& draft() const { return draft_; }
   ChangingTriangles& triangles() { return triangles_; }
   const ChangingTriangles& triangles() const { return triangles_; }
   Work& work() { return work_; }
@@ -69,7 +70,7 @@ class SnapState {
   bool is_border(const Edge& edge) const { return triangles_.sides(edge).size() == 1; }
   std::vector<Index>& list_of(By by) { return unseen_[by == by_corners ? 0 : 1]; }
 
-  facets::Draft& draft_;
+  facets::ComplexDraft& draft_;
   double limit_;
   SnapWhat what_;
   Work& work_;
@@ -81,8 +82,8 @@ class SnapState {
   std::vector<Done> done_;
 };
 
-/// Cancels twins among the triangles added since the last call; others cannot have become twins. Returns the
-/// number of cancelled triangles.
-std::size_t cancel_new_twins(SnapState& state);
+/// Cancels duplicates among the triangles added since the last call; others cannot have become duplicates.
+/// Returns the number of cancelled triangles.
+std::size_t cancel_new_duplicates(SnapState& state);
 
 }  // namespace collarmesh::repairing

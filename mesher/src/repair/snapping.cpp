@@ -5,13 +5,13 @@
 
 #include "facets/edges.h"
 #include "repair/changes.h"
+#include "repair/duplicate_triangles.h"
 #include "repair/most_places.h"
 #include "repair/snap_corners.h"
 #include "repair/snap_cuts.h"
 #include "repair/snap_overlay.h"
 #include "repair/snap_points.h"
 #include "repair/snap_state.h"
-#include "repair/twins.h"
 
 namespace collarmesh::repairing {
 
@@ -25,8 +25,8 @@ constexpr std::size_t most_overlays = 10, few_crossings = 100;
 // The snapping, in rounds. Each round only examines triangles that the round before has changed.
 class Snapper {
  public:
-  Snapper(Draft& draft, double distance_limit, SnapWhat what, Work& work, const std::vector<bool>& known,
-          bool cancel)
+  Snapper(ComplexDraft& draft, double distance_limit, SnapWhat what, Work& work,
+          const std::vector<bool>& known, bool cancel)
       : cancel_(cancel),
         knows_some_(!known.empty()),
         draft_(draft),
@@ -38,12 +38,13 @@ class Snapper {
         overlay_(state_, cuts_) {}
 
   SnapReport run() {
-    if (knows_some_) cancel_new_twins();
+    if (knows_some_) cancel_new_duplicates();
     // Snapping corners makes few triangles. If this multiplies them, triangles run along each other, and the
     // limit stops the snapping.
     const std::size_t count = state_.triangles().count();
     most_triangles_ = count / (what_ == SnapWhat::corners ? 4 : 1) + count + 1000;
-    if (Draft before = draft_; !snap_all_corners()) return keep_settled(before, 0, SnapState::by_corners);
+    if (ComplexDraft before = draft_; !snap_all_corners())
+      return keep_settled(before, 0, SnapState::by_corners);
     return what_ == SnapWhat::all ? overlay_until_settled() : finish();
   }
 
@@ -52,13 +53,13 @@ class Snapper {
   // crossings and more than half the number of the one before, if corners never settle, or after too many
   // overlays. Then undoes the changes at places that still change.
   SnapReport overlay_until_settled() {
-    const Draft before = state_.triangles().compacted();
+    const ComplexDraft before = state_.triangles().compacted();
     const std::size_t done_before = state_.done().size();
     std::size_t crossings = none;
     for (std::size_t overlays = 0;; ++overlays) {
       corners_.allow_cuts();
       if (!overlay_.run()) return finish();
-      cancel_new_twins();
+      cancel_new_duplicates();
       if (overlays == most_overlays ||
           (overlay_.count() > few_crossings && 2 * overlay_.count() > crossings) ||
           !snap_all_corners(most_rounds_after_overlay) || !settled_)
@@ -75,15 +76,15 @@ class Snapper {
   }
 
   // Undoes the changes since `before` at places with triangles that the parts `by` still have to examine.
-  SnapReport keep_settled(const Draft& before, std::size_t done_before, SnapState::By by) {
-    const Draft after = state_.triangles().compacted();
+  SnapReport keep_settled(const ComplexDraft& before, std::size_t done_before, SnapState::By by) {
+    const ComplexDraft after = state_.triangles().compacted();
     const std::vector<bool> unseen = state_.unseen(by);
     const Changes changes(before, after);
     const std::vector<SnapState::Done>& done = state_.done();
     std::vector<bool> changing(changes.places(), false), kept_at(after.points.size(), true);
     for (Index t = 0; t < after.triangles.size(); ++t)
       if (const Index place = changes.place_of_come()[t]; place != none && unseen[t]) changing[place] = true;
-    const auto mark = [&](const Draft& draft, const std::vector<Index>& place) {
+    const auto mark = [&](const ComplexDraft& draft, const std::vector<Index>& place) {
       for (Index t = 0; t < place.size(); ++t)
         if (place[t] != none)
           for (const Index p : draft.triangles[t]) kept_at[p] = !changing[place[t]];
@@ -107,7 +108,7 @@ class Snapper {
       if (snapped == CornerSnapper::Outcome::too_many) return false;
       settled_ = !merged && snapped == CornerSnapper::Outcome::nothing_near;
       if (settled_) return true;
-      cancel_new_twins();
+      cancel_new_duplicates();
       if (state_.triangles().count() > most_triangles_) return false;
     }
     return true;
@@ -122,13 +123,13 @@ class Snapper {
     if (report_.places.size() < most_places) report_.places.push_back(state_.at(done.point));
   }
 
-  void cancel_new_twins() {
-    if (cancel_) report_.cancelled_triangles += repairing::cancel_new_twins(state_);
+  void cancel_new_duplicates() {
+    if (cancel_) report_.cancelled_triangles += repairing::cancel_new_duplicates(state_);
   }
 
-  bool cancel_;      // whether twins are cancelled
+  bool cancel_;      // whether duplicates are cancelled
   bool knows_some_;  // whether some triangles are known
-  Draft& draft_;
+  ComplexDraft& draft_;
   SnapWhat what_;
   SnapState state_;
   PointMerger points_;
@@ -142,14 +143,14 @@ class Snapper {
 
 }  // namespace
 
-SnapReport snap_near_features(Draft& draft, double distance, SnapWhat what, Work* work,
+SnapReport snap_near_features(ComplexDraft& draft, double distance, SnapWhat what, Work* work,
                               const std::vector<bool>& known, bool cancel) {
   Work any;
-  const std::size_t twins = known.empty() && cancel ? cancel_twins(draft) : 0;
+  const std::size_t duplicates = known.empty() && cancel ? cancel_duplicates(draft) : 0;
   SnapReport report;
   if (distance > 0)
     report = Snapper(draft, distance, what, work != nullptr ? *work : any, known, cancel).run();
-  report.cancelled_triangles += twins;
+  report.cancelled_triangles += duplicates;
   return report;
 }
 

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "facets/draft.h"
+#include "facets/complex_draft.h"
 #include "repair/work.h"
 
 namespace collarmesh::repairing {
@@ -37,7 +37,7 @@ enum class SnapWhat {
 /// triangles of opposite orientation come to coincide, removes both, unless `cancel` is false.
 /// Throws WorkStopped; the draft is then unusable. Cost: O(n log n + k) for k pairs of near neighbours; each
 /// round after the first one only visits changed places.
-SnapReport snap_near_features(facets::Draft& draft, double distance, SnapWhat what = SnapWhat::all,
+SnapReport snap_near_features(facets::ComplexDraft& draft, double distance, SnapWhat what = SnapWhat::all,
                               Work* work = nullptr, const std::vector<bool>& known = {}, bool cancel = true);
 
 }  // namespace collarmesh::repairing

@@ -14,7 +14,7 @@ using namespace facets;
 
 class SoupMaker {
  public:
-  SoupMaker(std::span<const PolygonSoup> soups, const Draft& draft, Index first_new_point)
+  SoupMaker(std::span<const PolygonSoup> soups, const ComplexDraft& draft, Index first_new_point)
       : soups_(soups), draft_(draft), first_new_point_(first_new_point) {}
 
   std::vector<PolygonSoup> run() {
@@ -124,7 +124,7 @@ class SoupMaker {
   }
 
   std::span<const PolygonSoup> soups_;
-  const Draft& draft_;
+  const ComplexDraft& draft_;
   Index first_new_point_;
   std::vector<PolygonSoup> result_;
   std::vector<std::vector<Index>> index_;  // by soup and point
@@ -132,7 +132,7 @@ class SoupMaker {
 
 }  // namespace
 
-std::vector<PolygonSoup> to_soups(std::span<const PolygonSoup> soups, const Draft& draft,
+std::vector<PolygonSoup> to_soups(std::span<const PolygonSoup> soups, const ComplexDraft& draft,
                                   Index first_new_point) {
   return SoupMaker(soups, draft, first_new_point).run();
 }

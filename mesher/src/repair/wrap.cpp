@@ -14,7 +14,7 @@
 #include <set>
 #include <vector>
 
-#include "facets/draft.h"
+#include "facets/complex_draft.h"
 #include "facets/facet_triangulation.h"
 #include "facets/faults.h"
 #include "facets/weld.h"
@@ -43,7 +43,7 @@ struct Triangles {
 
 // Returns all facets as triangles, except those without area.
 Triangles triangles_of(std::span<const PolygonSoup> soups) {
-  facets::Draft draft;
+  facets::ComplexDraft draft;
   facets::Faults faults;
   const facets::PointMap map = facets::weld_points(soups, 0, draft, faults);
   faults.raise();

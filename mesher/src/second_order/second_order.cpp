@@ -44,9 +44,10 @@ constexpr unsigned steps_per_try = 3;
 // farther away than `rounding`; a move by at most `slight` on a planar patch is a SlightMove.
 constexpr double rounding = 1e-12, slight = 1e-6;
 
-class Curving {
+/// The placement of mid-edge nodes of tets on smooth features, such that no tet is inverted.
+class TetCurving {
  public:
-  Curving(TetMesh& mesh, const Plc& plc, const SecondOrderOptions& options, const Execution& execution)
+  TetCurving(TetMesh& mesh, const Plc& plc, const SecondOrderOptions& options, const Execution& execution)
       : mesh_(mesh),
         plc_(plc),
         options_(options),
@@ -401,7 +402,7 @@ SecondOrderReport make_second_order(TetMesh& mesh, const Plc& plc, const SecondO
   std::size_t flat_before = SIZE_MAX, invalid_before = SIZE_MAX;
   SecondOrderReport report;
   for (unsigned round = 0;; ++round) {
-    second_order::Curving curving(mesh, plc, options, execution);
+    second_order::TetCurving curving(mesh, plc, options, execution);
     if (!curving.find_nodes()) {
       report.cancelled = true;
       break;

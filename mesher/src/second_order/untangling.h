@@ -65,7 +65,7 @@ class Untangling {
   std::vector<Index> tets_;                         // all tets that have a free node
   std::vector<std::array<Index, 6>> free_of_tets_;  // indices in free_, by the tets' nodes; none for fixed
                                                     // nodes
-  std::vector<double> six_volumes_;                 // of these tets, taken as straight
+  std::vector<double> six_volumes_;                 // six times their volumes, taken as straight
 };
 
 }  // namespace collarmesh::second_order

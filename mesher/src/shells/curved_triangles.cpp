@@ -9,10 +9,11 @@ namespace collarmesh::shells {
 
 namespace {
 
-class Curving {
+/// The placement of mid-edge nodes of a mesh of triangles on smooth features.
+class TriangleCurving {
  public:
-  Curving(TetMesh& mesh, const Plc& plc, SurfaceMesher& mesher, const ExactGeometry& exact,
-          double least_jacobian)
+  TriangleCurving(TetMesh& mesh, const Plc& plc, SurfaceMesher& mesher, const ExactGeometry& exact,
+                  double least_jacobian)
       : mesh_(mesh), plc_(plc), mesher_(mesher), exact_(exact), least_jacobian_(least_jacobian) {}
 
   SecondOrderReport run() {
@@ -151,7 +152,7 @@ class Curving {
 
 SecondOrderReport curve_triangles(TetMesh& mesh, const Plc& plc, SurfaceMesher& mesher,
                                   const ExactGeometry& exact, double least_jacobian) {
-  return Curving(mesh, plc, mesher, exact, least_jacobian).run();
+  return TriangleCurving(mesh, plc, mesher, exact, least_jacobian).run();
 }
 
 }  // namespace collarmesh::shells

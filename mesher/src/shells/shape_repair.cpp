@@ -158,16 +158,16 @@ bool ShapeRepair::move_corners(Index triangle) {
   return true;
 }
 
-bool ShapeRepair::improve_connections(Index triangle, double wanted, bool may_contract) {
+bool ShapeRepair::improve_connections(Index triangle, double wanted, bool may_collapse) {
   const std::array<Index, 3> c = complex_.triangles[triangle].corners;
   for (unsigned i = 0; i < 3; ++i)
     if (editor_.flip(c[i], c[(i + 1) % 3])) return true;
-  if (!may_contract) return false;
-  const SurfaceEditor::Contraction rule{.longest = 1.5, .least_shape = wanted, .better = true};
+  if (!may_collapse) return false;
+  const SurfaceEditor::CollapseRule rule{.longest = 1.5, .least_shape = wanted, .better = true};
   for (unsigned i = 0; i < 3; ++i)
     for (unsigned j = 0; j < 3; ++j)
       if (i != j && complex_.vertices[c[i]].triangles.size() <= most_triangles &&
-          editor_.contract(c[i], c[j], rule))
+          editor_.collapse(c[i], c[j], rule))
         return true;
   return false;
 }
@@ -290,7 +290,7 @@ bool ShapeRepair::refine(Index triangle) {
 }
 
 std::size_t ShapeRepair::run(std::size_t most_vertices) {
-  constexpr unsigned most_passes = 40, contracting_passes = 3, first_passes = 12;
+  constexpr unsigned most_passes = 40, collapsing_passes = 3, first_passes = 12;
   const double wanted = least_angle + margin;
   // The shape recorded for a refined triangle, above every wanted shape.
   constexpr double refined = 180;
@@ -309,8 +309,8 @@ std::size_t ShapeRepair::run(std::size_t most_vertices) {
       if (!poor(t, wanted) || tried(t, refined)) continue;
       // Moves alone cannot repair a triangle that is far from good.
       const bool near = editor_.shape(t) > 0.5 * wanted;
-      // After some passes edges are no longer contracted, so that new vertices stay.
-      if (improve_connections(t, wanted, pass < contracting_passes) || (near && move_corners(t)) ||
+      // After some passes edges are no longer collapsed, so that new vertices stay.
+      if (improve_connections(t, wanted, pass < collapsing_passes) || (near && move_corners(t)) ||
           (complex_.vertices.size() < limit && refine(t)) || (!near && move_corners(t)))
         changed = true;
       else
@@ -371,7 +371,7 @@ bool ShapeRepair::approach_points() {
 
 void ShapeRepair::coarsen() {
   constexpr double short_edge = 0.75, longest = 1.4;
-  const SurfaceEditor::Contraction rule{.longest = longest, .least_shape = wanted_shape};
+  const SurfaceEditor::CollapseRule rule{.longest = longest, .least_shape = wanted_shape};
   for (Index v = 0; v < complex_.vertices.size(); ++v) {
     if (complex_.vertices[v].triangles.empty() || complex_.vertices[v].feature.dimension == 0) continue;
     std::vector<std::pair<double, Index>> short_ones;
@@ -380,7 +380,7 @@ void ShapeRepair::coarsen() {
         short_ones.emplace_back(share, n);
     std::sort(short_ones.begin(), short_ones.end());
     for (const auto& [share, n] : short_ones)
-      if (editor_.contract(v, n, rule)) break;
+      if (editor_.collapse(v, n, rule)) break;
   }
 }
 

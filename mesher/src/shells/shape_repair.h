@@ -9,7 +9,7 @@
 
 namespace collarmesh::shells {
 
-/// The improvement of triangles whose angles are out of bounds: by flips, moves and contractions if that
+/// The improvement of triangles whose angles are out of bounds: by flips, moves and collapses if that
 /// suffices; else by a vertex at the circumcentre or, if that lies beyond a curve, by dividing the curve's
 /// edge (J. Ruppert: A Delaunay refinement algorithm for quality 2-dimensional mesh generation, 1995). The
 /// vertex is closer to the shortest edge if that suffices (A. Ungor, Off-centers, 2004).
@@ -28,7 +28,7 @@ class ShapeRepair {
   /// Divides triangles that are too far from their patches, with at most `most_vertices` new vertices.
   /// Returns whether it divided any.
   bool approach(std::size_t most_vertices);
-  /// Contracts edges if the shapes stay good.
+  /// Collapses edges if the shapes stay good.
   void coarsen();
 
   /// Sets the least height, relative to the target edge length, of triangles between curves that are refined.
@@ -44,7 +44,7 @@ class ShapeRepair {
   /// Returns poor triangles, worst first: among `known` ones and those from number `first` on.
   std::vector<Index> poor_triangles(double wanted, std::span<const Index> known, Index first) const;
   bool approach_points();
-  bool improve_connections(Index triangle, double wanted, bool may_contract);
+  bool improve_connections(Index triangle, double wanted, bool may_collapse);
   bool improve_by_moves(Index triangle);
   bool move_corners(Index triangle);
   bool move_within(Index vertex);

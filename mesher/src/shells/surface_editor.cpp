@@ -135,9 +135,9 @@ bool SurfaceEditor::flip(Index a, Index b) {
   return true;
 }
 
-/// Returns whether contracting an edge keeps the topology (link condition): the links of its ends may share
+/// Returns whether collapsing an edge keeps the topology (link condition): the links of its ends may share
 /// only the link of the edge.
-bool SurfaceEditor::can_contract(Index from, Index to) const {
+bool SurfaceEditor::can_collapse(Index from, Index to) const {
   const std::vector<Index> around = complex_.neighbours(from), around_to = complex_.neighbours(to);
   std::vector<Index> common, thirds;
   std::set_intersection(around.begin(), around.end(), around_to.begin(), around_to.end(),
@@ -158,7 +158,7 @@ bool SurfaceEditor::can_contract(Index from, Index to) const {
   return true;
 }
 
-bool SurfaceEditor::shapes_permit(Index from, Index to, const Contraction& rule) const {
+bool SurfaceEditor::shapes_permit(Index from, Index to, const CollapseRule& rule) const {
   const double before = least_shape_at(from);
   const double least = std::min(before, rule.least_shape);
   bool any = false;
@@ -173,7 +173,7 @@ bool SurfaceEditor::shapes_permit(Index from, Index to, const Contraction& rule)
   return any;
 }
 
-bool SurfaceEditor::lengths_permit(Index from, Index to, const Contraction& rule) const {
+bool SurfaceEditor::lengths_permit(Index from, Index to, const CollapseRule& rule) const {
   double longest = 0, longest_before = 0;  // longest edge after and before, relative to the sizes
   const auto look_at = [&](Index n) {
     if (n == to || n == from) return;
@@ -200,7 +200,7 @@ double SurfaceEditor::sag_across(const std::array<Index, 2>& two) const {
                      before.at[1] + (behind.at[1] - behind.at[0]));
 }
 
-bool SurfaceEditor::curve_permits(Index from, Index to, const Contraction& rule) const {
+bool SurfaceEditor::curve_permits(Index from, Index to, const CollapseRule& rule) const {
   const auto around = edges_around(from);
   const Index edge = complex_.edge_at(from, to);
   if (!around || edge == none) return false;
@@ -227,13 +227,13 @@ void SurfaceEditor::replace_vertex(Index vertex, std::span<const Created> create
   for (const Created& n : created) complex_.add_triangle(n.corners, n.patch);
 }
 
-bool SurfaceEditor::contract(Index from, Index to, const Contraction& rule) {
+bool SurfaceEditor::collapse(Index from, Index to, const CollapseRule& rule) {
   const unsigned dimension = complex_.vertices[from].feature.dimension;
   if (dimension == 0 || ends_tip(from)) return false;
   if (dimension == 1 && complex_.edge_at(from, to) == none) return false;
   if (!shapes_permit(from, to, rule) || !lengths_permit(from, to, rule)) return false;
   if (dimension == 1 && !curve_permits(from, to, rule)) return false;
-  if (!can_contract(from, to)) return false;
+  if (!can_collapse(from, to)) return false;
   const std::vector<Index> all = complex_.vertices[from].triangles;
   std::vector<Created> created;
   for (const Index t : all) {

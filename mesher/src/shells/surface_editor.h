@@ -24,8 +24,8 @@ class SurfaceEditor {
                 const PatchSurfaces& surfaces, const SurfaceSizes& sizes, SurfaceTolerance tolerance,
                 double most_excess);
 
-  /// Conditions for a contraction.
-  struct Contraction {
+  /// Conditions for an edge collapse.
+  struct CollapseRule {
     double longest = INFINITY;  ///< longest edge afterwards, relative to the target edge length
     double least_shape = 0;     ///< least shape afterwards, or the one before if that is less
     bool better = false;        ///< whether the least shape must increase
@@ -49,8 +49,8 @@ class SurfaceEditor {
 
   /// Replaces the edge ab inside a patch by the other diagonal, if the least shape increases.
   bool flip(Index a, Index b);
-  /// Contracts the edge to its vertex `to`. Returns false if that is not possible.
-  bool contract(Index from, Index to, const Contraction& rule);
+  /// Collapses the edge onto its vertex `to`. Returns false if that is not possible.
+  bool collapse(Index from, Index to, const CollapseRule& rule);
   /// Returns the triangles whose least shape is largest if a vertex is removed; nothing if that is not
   /// possible.
   std::optional<Filling> filling_without(Index vertex, const Removal& rule) const;
@@ -137,10 +137,10 @@ class SurfaceEditor {
   bool fit(std::span<const Created> created, std::span<const Index> removed, Index centre) const;
   PatchSurfaces::Fit misfit_around(Index vertex) const;
   PatchSurfaces::Fit worst_fit(std::span<const Index> triangles) const;
-  bool can_contract(Index from, Index to) const;
-  bool shapes_permit(Index from, Index to, const Contraction& rule) const;
-  bool lengths_permit(Index from, Index to, const Contraction& rule) const;
-  bool curve_permits(Index from, Index to, const Contraction& rule) const;
+  bool can_collapse(Index from, Index to) const;
+  bool shapes_permit(Index from, Index to, const CollapseRule& rule) const;
+  bool lengths_permit(Index from, Index to, const CollapseRule& rule) const;
+  bool curve_permits(Index from, Index to, const CollapseRule& rule) const;
   double sag_across(const std::array<Index, 2>& two) const;
   void merge_edges(Index middle);
   void replace_vertex(Index vertex, std::span<const Created> created);

@@ -19,7 +19,7 @@ namespace collarmesh::shells {
 namespace {
 
 // Edges longer than the first of these lengths, relative to the target, are divided; edges shorter than the
-// second are contracted.
+// second are collapsed.
 constexpr double long_edge = 1.35, short_edge = 0.74;
 
 }  // namespace
@@ -127,9 +127,9 @@ void SurfaceMesher::divide_curves(const SharpCorners& corners) {
 }
 
 /// Removes curve vertices at which the curve is no longer divided.
-void SurfaceMesher::contract_on_curves() {
+void SurfaceMesher::collapse_on_curves() {
   constexpr unsigned rounds = 3;
-  const SurfaceEditor::Contraction rule{.longest = INFINITY, .least_shape = 0};
+  const SurfaceEditor::CollapseRule rule{.longest = INFINITY, .least_shape = 0};
   for (unsigned round = 0; round < rounds; ++round) {
     bool blocked = false;
     for (Index v = 0; v < kept_.size(); ++v) {
@@ -139,7 +139,7 @@ void SurfaceMesher::contract_on_curves() {
       if (!around) continue;
       Index before = complex_.edges[(*around)[0]].ends[0], behind = complex_.edges[(*around)[1]].ends[1];
       if (editor_.length(v, behind) < editor_.length(v, before)) std::swap(before, behind);
-      if (!editor_.contract(v, before, rule) && !editor_.contract(v, behind, rule)) blocked = true;
+      if (!editor_.collapse(v, before, rule) && !editor_.collapse(v, behind, rule)) blocked = true;
     }
     flip_all();
     if (!blocked) return;
@@ -171,7 +171,7 @@ void SurfaceMesher::divide_long() {
   }
 }
 
-void SurfaceMesher::contract_short(double least_shape) {
+void SurfaceMesher::collapse_short(double least_shape) {
   using Entry = std::tuple<double, Index, Index>;
   std::vector<Entry> edges;
   for (const auto& t : complex_.triangles) {
@@ -183,13 +183,13 @@ void SurfaceMesher::contract_short(double least_shape) {
     }
   }
   sort_uniquely(edges);
-  const SurfaceEditor::Contraction rule{.longest = long_edge, .least_shape = least_shape};
+  const SurfaceEditor::CollapseRule rule{.longest = long_edge, .least_shape = least_shape};
   for (const auto& [share, a, b] : edges) {
     if (complex_.vertices[a].triangles.empty() || complex_.vertices[b].triangles.empty()) continue;
     if (!complex_.have_triangle(a, b)) continue;
     const auto inside = [&](Index v) { return complex_.vertices[v].feature.dimension == 2; };
-    if (inside(a) && editor_.contract(a, b, rule)) continue;
-    if (inside(b)) editor_.contract(b, a, rule);
+    if (inside(a) && editor_.collapse(a, b, rule)) continue;
+    if (inside(b)) editor_.collapse(b, a, rule);
   }
 }
 
@@ -255,8 +255,8 @@ void SurfaceMesher::run() {
                              ChordLimits(complex_, plc_, point_of_, tolerance_));
   flip_all();
   divide_curves(corners);
-  contract_on_curves();
-  contract_short(any_shape);
+  collapse_on_curves();
+  collapse_short(any_shape);
   flip_all();
   corners.mark(complex_);
   constexpr std::size_t most_in_narrow_places = 100'000;
@@ -266,7 +266,7 @@ void SurfaceMesher::run() {
   flip_all();
   for (unsigned round = 0; round < rounds && !execution_.cancelled(); ++round) {
     divide_long();
-    contract_short(round == 0 ? any_shape : least_angle);
+    collapse_short(round == 0 ? any_shape : least_angle);
     flip_all();
     smooth();
     flip_all();

@@ -18,7 +18,7 @@ class ChordLimits;
 class SharpCorners;
 
 /// The mesher of a complex's patches. Its steps: make the triangles of the complex editable; divide curves by
-/// size; divide long edges and contract short ones; refine triangles with poor angles by circumcentres;
+/// size; divide long edges and collapse short ones; refine triangles with poor angles by circumcentres;
 /// coarsen places that became too fine.
 class SurfaceMesher {
  public:
@@ -46,9 +46,9 @@ class SurfaceMesher {
   void divide_curves(const SharpCorners& corners);
   void divide_curve_at(Index curve, std::vector<Index>& edges, const std::array<double, 2>& tips,
                        const ChordLimits& limits);
-  void contract_on_curves();
+  void collapse_on_curves();
   void divide_long();
-  void contract_short(double least_shape);
+  void collapse_short(double least_shape);
   void flip_all();
   void smooth();
   void remove_needless_vertices();

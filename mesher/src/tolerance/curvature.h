@@ -20,8 +20,8 @@ std::vector<Curvature> curvatures(const Plc& plc, const Plc::Patch& patch);
 
 /// Target edge lengths, absolute, that put N elements on a full circle of the curvature.
 struct CurvatureSizes {
-  std::vector<double> triangle;                    ///< of every triangle of the complex; infinite where flat
-  std::vector<std::vector<double>> curve_segment;  ///< of every segment of every curve's polyline
+  std::vector<double> triangle;  ///< size at every triangle of the complex; infinite where flat
+  std::vector<std::vector<double>> curve_segment;  ///< size at every segment of every curve's polyline
 };
 
 /// Returns the sizes. For a smooth patch the larger principal curvature counts; for a curve, the turning

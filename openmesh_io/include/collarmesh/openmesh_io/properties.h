@@ -14,14 +14,15 @@ namespace collarmesh::openmesh_io {
 
 // Names of the properties that `boundary_surface` writes, and that are read by default. Tags are
 // std::int64_t.
-inline constexpr const char* patch_tag = "collarmesh:patch_tag";      ///< of faces
-inline constexpr const char* curve_tag = "collarmesh:curve_tag";      ///< of edges
-inline constexpr const char* vertex_tag = "collarmesh:vertex_tag";    ///< of vertices
-inline constexpr const char* region_back = "collarmesh:region_back";  ///< of faces: int, the region behind
+inline constexpr const char* patch_tag = "collarmesh:patch_tag";      ///< face property
+inline constexpr const char* curve_tag = "collarmesh:curve_tag";      ///< edge property
+inline constexpr const char* vertex_tag = "collarmesh:vertex_tag";    ///< vertex property
+inline constexpr const char* region_back = "collarmesh:region_back";  ///< face property: region behind, int
 inline constexpr const char* region_front = "collarmesh:region_front";
-inline constexpr const char* mesh_point =
-    "collarmesh:mesh_point";  ///< of vertices: int, index in TetMesh::points
-inline constexpr const char* mesh_face = "collarmesh:mesh_face";  ///< of faces: int, index in TetMesh::faces
+/// Vertex property: int, index in TetMesh::points.
+inline constexpr const char* mesh_point = "collarmesh:mesh_point";
+/// Face property: int, index in TetMesh::faces.
+inline constexpr const char* mesh_face = "collarmesh:mesh_face";
 
 namespace detail {
 

@@ -19,17 +19,28 @@ namespace collarmesh::openmesh_io {
 /// and have the names given here. A missing property throws OptionError, unless it is one of the defaults,
 /// which `boundary_surface` writes.
 struct SurfaceOptions {
-  std::string name = {};                     ///< name in messages
-  std::optional<Tag> region = {};            ///< tag of the regions that this surface bounds; none: their
-                                             ///< number
-  std::string region_property = {};          ///< of faces: faces with the same value form a separate surface,
-                                             ///< and the value becomes the tag of its regions; empty: one
-                                             ///< surface
-  std::string patch_property = patch_tag;    ///< of faces: tag of the patch
-  std::string curve_property = curve_tag;    ///< of edges: a value other than 0 makes a curve with that tag
-  std::string vertex_property = vertex_tag;  ///< of vertices: where it is not 0, the vertex becomes a feature
-                                             ///< with this tag
-  bool feature_edges = true;                 ///< edges with the feature bit of their status are curves
+  std::string name = {};           ///< name in messages
+  std::optional<Tag> region = {};  ///< tag of the regions that this surface bounds; none: their number
+  /// Face property: faces with the same value form a separate surface, and the value becomes the tag of its
+  /// regions; empty: one surface.
+  std::string region_property = {};
+  std::string patch_property = patch_tag;  ///< face property: tag of the patch
+  /// Edge property: a value other than 0 makes a curve with that tag.
+  std::string curve_property = curve_tag;
+  /// Vertex property: where it is not 0, the vertex becomes a feature with this tag.
+  std::string vertex_property = vertex_tag;
+  bool feature_edges = true;       ///< edges with the feature bit of their status are curves
+};                                 ///< name in messages
+std::optional<Tag> region = {};    ///< tag of the regions that this surface bounds; none: their
+                                   ///< number
+std::string region_property = {};  ///< face property: faces with the same value form a separate
+                                   ///< surface, and the value becomes the tag of its regions; empty: one
+                                   ///< surface
+std::string patch_property = patch_tag;  ///< face property: tag of the patch
+std::string curve_property = curve_tag;  ///< edge property: a value other than 0 makes a curve with that tag
+std::string vertex_property = vertex_tag;  ///< vertex property: where it is not 0, the vertex becomes
+                                           ///< a feature with this tag
+bool feature_edges = true;                 ///< edges with the feature bit of their status are curves
 };
 
 /// Counts of the contents of an OpenMesh mesh. None of them is an error by itself: `build_plc` decides.

@@ -28,8 +28,8 @@ struct FeatureMatch {
   std::vector<Index> vertex_point;  ///< by vertex of the complex: its mesh point, or none
 };
 
-/// The mesh under test, its complex, and the measures to judge by.
-struct Subject {
+/// A mesh with its complex and the bounds that it is judged by.
+struct MeshToCheck {
   const TetMesh& mesh;
   const Plc& plc;
   CheckOptions options;
@@ -72,8 +72,8 @@ class ThinCells {
  public:
   static constexpr double largest_angle = largest_angle_of_thin_tets;
 
-  /// Precondition: subject.match is filled in.
-  explicit ThinCells(const Subject& subject);
+  /// Precondition: to_check.match is filled in.
+  explicit ThinCells(const MeshToCheck& to_check);
 
   bool claimed(Index tet) const;
   /// Returns whether this tet may be thin.
@@ -92,7 +92,7 @@ class ThinCells {
   double forced_angle(Index tet) const;
 
   const TetMesh& mesh_;
-  const Subject& subject_;
+  const MeshToCheck& to_check_;
   double smallest_;
   const std::vector<std::uint8_t>& marks_;
   bool all_;
@@ -102,8 +102,8 @@ class ThinCells {
 };
 
 /// Returns for each point the feature of lowest dimension that contains it, by the mesh's faces and edges.
-/// Precondition: subject.match is filled in.
-std::vector<TetMesh::VertexFeature> features_of(const Subject& subject);
+/// Precondition: to_check.match is filled in.
+std::vector<TetMesh::VertexFeature> features_of(const MeshToCheck& to_check);
 
 /// Items in groups by a key below `groups`; leaves out items whose key is none.
 class Grouping {
@@ -128,15 +128,15 @@ class Grouping {
 
 inline double area(const Point& a, const Point& b, const Point& c) { return 0.5 * norm(cross(b - a, c - a)); }
 
-/// Makes the subject without matches of features and collars, which `judge` finds. Keeps references to the
-/// mesh and the complex.
-Subject make_subject(const TetMesh& mesh, const Plc& plc, const CheckOptions& options);
+/// Makes the mesh to check without matches of features and collars, which `judge` finds. Keeps references to
+/// the mesh and the complex.
+MeshToCheck make_mesh_to_check(const TetMesh& mesh, const Plc& plc, const CheckOptions& options);
 
 /// Checks that arrays have equal lengths and corners are in range. If false, no other check can run.
 bool check_arrays(const TetMesh& mesh, Findings& findings);
 
 /// Checks that points are finite, distinct and used by tets. Returns false if one is not finite.
-bool check_points(const Subject& subject, Findings& findings);
+bool check_points(const MeshToCheck& to_check, Findings& findings);
 
 /// Finds missing labels of a mesh from a file by position. If a tet's region and tag are not the complex's,
 /// finds the region of each connected part (bounded by listed faces and planar patches) from its largest tet.
@@ -144,50 +144,51 @@ bool check_points(const Subject& subject, Findings& findings);
 /// tets and the complex. The result has the complex's labels; a note says which were found. Returns nothing
 /// if no label is missing, or if tets lie outside, which is a finding. Precondition: check_arrays and
 /// check_points hold. Cost: O(n log n).
-std::optional<TetMesh> place_by_position(const Subject& subject, CheckReport& report, Findings& findings);
+std::optional<TetMesh> place_by_position(const MeshToCheck& to_check, CheckReport& report,
+                                         Findings& findings);
 
 /// Checks that the labels are indices of the complex. If false, no other check can run.
 bool check_labels(const TetMesh& mesh, const Plc& plc, Findings& findings);
 
 /// Checks volumes, shapes and region volumes of all tets.
-/// Precondition: subject.collar is filled in.
-void check_tets(const Subject& subject, CheckReport& report, Findings& findings);
+/// Precondition: to_check.collar is filled in.
+void check_tets(const MeshToCheck& to_check, CheckReport& report, Findings& findings);
 
 /// Counts the tets whose corners are all corners of listed faces. They are findings if each tet needs a node
 /// inside a region.
-void check_interior_nodes(const Subject& subject, CheckReport& report, Findings& findings);
+void check_interior_nodes(const MeshToCheck& to_check, CheckReport& report, Findings& findings);
 
 /// Checks tets against each other and against the listed faces. Visits each edge once, so it also finds the
 /// median length of the edges.
-void check_conformity(const Subject& subject, CheckReport& report, Findings& findings);
+void check_conformity(const MeshToCheck& to_check, CheckReport& report, Findings& findings);
 
-void check_watertight(const Subject& subject, Findings& findings);
+void check_watertight(const MeshToCheck& to_check, Findings& findings);
 
 /// The volumes that the complex encloses, by region, and the differences that the mesh's surface allows: to
 /// first order, the allowed distance times the area.
 struct RegionVolumes {
   std::vector<double> enclosed, allowed;
 };
-RegionVolumes expected_volumes(const Subject& subject);
+RegionVolumes expected_volumes(const MeshToCheck& to_check);
 
 /// Checks region volumes. Precondition: report.region_volumes is filled in.
-void check_region_volumes(const Subject& subject, const CheckReport& report, Findings& findings);
+void check_region_volumes(const MeshToCheck& to_check, const CheckReport& report, Findings& findings);
 
 /// Compares volumes, areas and lengths of the mesh with those of the input. Volumes may differ by 5%, with
-/// curved elements by 1%, unless the bounds ask for a distance. Preconditions: subject.match and
+/// curved elements by 1%, unless the bounds ask for a distance. Preconditions: to_check.match and
 /// report.region_volumes are filled in.
-void check_shape_kept(const Subject& subject, CheckReport& report, Findings& findings);
+void check_shape_kept(const MeshToCheck& to_check, CheckReport& report, Findings& findings);
 
 /// Compares the thickness of walls and the width of gaps at smooth patches with those of the complex, along
 /// rays. Averaged over a patch they may differ by half, unless the bounds ask for a distance. Precondition:
-/// subject.match is filled in. Cost: near linear, at most 4000 rays per patch.
-void check_thickness_kept(const Subject& subject, CheckReport& report, Findings& findings);
+/// to_check.match is filled in. Cost: near linear, at most 4000 rays per patch.
+void check_thickness_kept(const MeshToCheck& to_check, CheckReport& report, Findings& findings);
 
 /// Compute the allowed distances. For straight curves and planar patches: a few times their own deviation
 /// from straight or planar, because the mesh's vertices may be extrapolated from the complex's, but at most
 /// the complex's planar tolerance. For other features: the distance tolerance. Rounding is added to all.
-std::vector<double> curve_allowances(const Subject& subject);
-std::vector<double> patch_allowances(const Subject& subject);
+std::vector<double> curve_allowances(const MeshToCheck& to_check);
+std::vector<double> patch_allowances(const MeshToCheck& to_check);
 
 /// Finds the features by the indices in the mesh; if it has none, by tags and position.
 FeatureMatch match_features(const TetMesh& mesh, const Plc& plc, double rounding);
@@ -198,37 +199,37 @@ std::vector<Index> match_vertices(const TetMesh& mesh, const Plc& plc, double ro
 /// Finds patches for faces without one: by position and, if the tags are the complex's, by tag.
 std::vector<Index> match_faces(const TetMesh& mesh, const Plc& plc, bool by_tag);
 
-/// Precondition of these functions: subject.match is filled in; check_vertices_present needs only its
+/// Precondition of these functions: to_check.match is filled in; check_vertices_present needs only its
 /// vertices.
-void check_vertices_present(const Subject& subject, Findings& findings);
-void check_vertices(const Subject& subject, Findings& findings);
-void check_listed_edges(const Subject& subject, Findings& findings);
-void check_curves(const Subject& subject, CheckReport& report, Findings& findings);
-void check_patches(const Subject& subject, CheckReport& report, Findings& findings);
+void check_vertices_present(const MeshToCheck& to_check, Findings& findings);
+void check_vertices(const MeshToCheck& to_check, Findings& findings);
+void check_listed_edges(const MeshToCheck& to_check, Findings& findings);
+void check_curves(const MeshToCheck& to_check, CheckReport& report, Findings& findings);
+void check_patches(const MeshToCheck& to_check, CheckReport& report, Findings& findings);
 
 /// Finds the cells of collars: stars have one corner on a crease of the complex; books have two, joined by an
 /// edge on it. If the mesh marks cells, only marked ones count; a mark elsewhere is a finding. If other tets
 /// at a crease are marked, or tets are thin, the mesh was coarsened: then all cells that touch a crease are
-/// its collar. Precondition: subject.match is filled in.
-void find_collar_cells(Subject& subject, Findings& findings);
+/// its collar. Precondition: to_check.match is filled in.
+void find_collar_cells(MeshToCheck& to_check, Findings& findings);
 
 /// Checks the balls of the collars against the features of the mesh and against each other (paper,
 /// Definitions 6 and 7). Does nothing if the mesh does not have them.
-void check_collars(const Subject& subject, Findings& findings);
+void check_collars(const MeshToCheck& to_check, Findings& findings);
 
 /// Gives the faces and edges of a mesh of second order the mid-edge nodes of the tets there.
 void take_mid_nodes_of_tets(TetMesh& mesh);
 
 /// Checks mid-edge nodes and the sign of the Jacobian. Does nothing for a mesh of first order.
-void check_second_order(const Subject& subject, CheckReport& report, Findings& findings);
+void check_second_order(const MeshToCheck& to_check, CheckReport& report, Findings& findings);
 
 /// Return whether a feature lies outside all regions and therefore is not in the mesh.
-bool curve_is_outside(const Subject& subject, Index curve);
-bool vertex_is_outside(const Subject& subject, Index vertex);
-bool patch_is_outside(const Subject& subject, Index patch);
+bool curve_is_outside(const MeshToCheck& to_check, Index curve);
+bool vertex_is_outside(const MeshToCheck& to_check, Index vertex);
+bool patch_is_outside(const MeshToCheck& to_check, Index patch);
 
 /// Warns of curves and vertices that are on no patch and lie outside all regions. The builder of the complex
 /// warns of such patches.
-void warn_of_features_outside(const Subject& subject, CheckReport& report);
+void warn_of_features_outside(const MeshToCheck& to_check, CheckReport& report);
 
 }  // namespace collarmesh::checks

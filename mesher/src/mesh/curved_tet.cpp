@@ -6,8 +6,8 @@
 #include <cmath>
 #include <vector>
 
-#include "check/orientation.h"
 #include "common/cell_shapes.h"
+#include "mesh/orientation.h"
 
 namespace collarmesh {
 
@@ -128,7 +128,7 @@ CurvedTet curved_tet(const TetMesh& mesh, Index tet) {
 
 bool jacobian_exceeds(const CurvedTet& nodes, double least) {
   assert(least >= 0 && least < 1);
-  if (is_straight(nodes)) return checks::exact_orientation(nodes[0], nodes[1], nodes[2], nodes[3]) > 0;
+  if (is_straight(nodes)) return exact_orientation(nodes[0], nodes[1], nodes[2], nodes[3]) > 0;
   double error = 0;
   std::vector<Part> open(1);
   open[0].cubic = jacobian(nodes, error);

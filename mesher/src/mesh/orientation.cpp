@@ -1,8 +1,8 @@
-#include "check/orientation.h"
+#include "mesh/orientation.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
-namespace collarmesh::checks {
+namespace collarmesh {
 
 int exact_orientation(const Point& a, const Point& b, const Point& c, const Point& d) {
   using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
@@ -10,4 +10,4 @@ int exact_orientation(const Point& a, const Point& b, const Point& c, const Poin
   return static_cast<int>(CGAL::orientation(exact(a), exact(b), exact(c), exact(d)));
 }
 
-}  // namespace collarmesh::checks
+}  // namespace collarmesh

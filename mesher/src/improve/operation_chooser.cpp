@@ -1,4 +1,4 @@
-#include "improve/remedies.h"
+#include "improve/operation_chooser.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,8 +15,8 @@ constexpr double enough = 0.7;
 
 }  // namespace
 
-Remedies::Remedies(const EditableMesh& edited, const SliverRule& rule, const ImproveOptions& options,
-                   bool refill)
+OperationChooser::OperationChooser(const EditableMesh& edited, const SliverRule& rule,
+                                   const ImproveOptions& options, bool refill)
     : complex_(edited.complex),
       rule_(rule),
       thin_above_(options.thin_above > 0 ? options.thin_above : options.bounds.radius_edge),
@@ -25,7 +25,7 @@ Remedies::Remedies(const EditableMesh& edited, const SliverRule& rule, const Imp
       keep_vertices_(options.keep_vertices),
       refill_(refill) {}
 
-double Remedies::poor_quality(Index tet) const {
+double OperationChooser::poor_quality(Index tet) const {
   if (!complex_[tet].alive || complex_[tet].collar) return INFINITY;
   if (rule_.surely_exceeds(wanted_, complex_.corners(tet))) return INFINITY;
   const double q = quality(tet);
@@ -33,7 +33,7 @@ double Remedies::poor_quality(Index tet) const {
   return q;
 }
 
-Change Remedies::propose(Operations& operations, Index tet) const {
+Change OperationChooser::propose(Operations& operations, Index tet) const {
   Change change;
   operations.remove_best_edge(tet, change);
   const auto& corners = complex_[tet].corners;
@@ -42,20 +42,20 @@ Change Remedies::propose(Operations& operations, Index tet) const {
   for (const Index v : corners)
     if (!stays(v)) operations.move_vertex(v, change);
   if (found() || !may_change_vertices(tet)) return change;
-  operations.contract_best_edge(tet, change);
+  operations.collapse_best_edge(tet, change);
   for (const auto& [i, j] : cell_shapes::corner_pairs)
     if (!found()) operations.split_edge(corners[i], corners[j], enough * wanted_, change);
-  if (found() || !rule_.is_blunt(quality(tet))) return change;
+  if (found() || !rule_.is_too_obtuse(quality(tet))) return change;
   // Reconnection helps flat tets, such as those between two prisms of a thin wall.
   if (refill_) operations.reconnect(tet, change);
   if (found()) return change;
   // A longer edge is better than a missed guarantee, so any length is allowed here.
-  operations.contract_best_edge(tet, change, Operations::Lengths::any);
+  operations.collapse_best_edge(tet, change, Operations::Lengths::any);
   return change;
 }
 
-bool Remedies::may_change_vertices(Index tet) const {
-  if (!keep_vertices_ || rule_.is_blunt(quality(tet))) return true;
+bool OperationChooser::may_change_vertices(Index tet) const {
+  if (!keep_vertices_ || rule_.is_too_obtuse(quality(tet))) return true;
   std::vector<Index> star;
   for (const Index v : complex_[tet].corners) {
     complex_.star(v, star);
@@ -64,7 +64,7 @@ bool Remedies::may_change_vertices(Index tet) const {
   return true;
 }
 
-void Remedies::set_stays(Index tet, bool stays) {
+void OperationChooser::set_stays(Index tet, bool stays) {
   stays_.resize(complex_.mesh().points.size(), false);
   for (const Index v : complex_[tet].corners) stays_[v] = stays;
 }

@@ -11,12 +11,12 @@ namespace collarmesh::remeshing::improvement {
 /// A source of operations that may improve a poor tet, in the order in which to try them. Remembers for each
 /// vertex whether moving it is known to be useless. Only reads the mesh; several threads may call it at once,
 /// each with its own operations.
-class Remedies {
+class OperationChooser {
  public:
   /// Keeps references to the mesh and the rule. `refill`: fill the space around flat tets again where nothing
   /// else helps.
-  Remedies(const EditableMesh& edited, const SliverRule& rule, const ImproveOptions& options,
-           bool refill = true);
+  OperationChooser(const EditableMesh& edited, const SliverRule& rule, const ImproveOptions& options,
+                   bool refill = true);
 
   /// Returns the sine of the angle up to which tets are improved.
   double wanted() const { return wanted_; }
@@ -25,16 +25,17 @@ class Remedies {
   double poor_quality(Index tet) const;
 
   /// Returns the first operation that helps: removal of an edge, move of a corner, edge collapse, insertion;
-  /// for a blunt tet also reconnection, and a collapse that makes longer edges.
+  /// for a tet that is too obtuse also reconnection, and a collapse that makes longer edges.
   Change propose(Operations& operations, Index tet) const;
   /// Returns whether the tet counts as thin.
   bool is_thin(Index tet) const { return !thin_above_.holds(complex_.corners(tet)); }
   /// Returns whether the tet has an angle above the largest one of thin tets. Proposals for such a tet cost
   /// far more than others, as the space around it is filled anew in many ways.
-  bool is_blunt(Index tet) const { return rule_.is_blunt(quality(tet)); }
+  bool is_too_obtuse(Index tet) const { return rule_.is_too_obtuse(quality(tet)); }
   /// Returns whether the number of vertices may change at this tet. Walls of a coarsened mesh are one element
   /// thick, which makes their tets poor, but new vertices would undo coarsening. So if vertices are to be
-  /// kept, their number may change only at blunt tets, and at tets that are not near a thin one.
+  /// kept, their number may change only at tets that are too obtuse, and at those that are not near a thin
+  /// one.
   bool may_change_vertices(Index tet) const;
 
   /// Records that no operation helps this tet until something changes at its vertices.

@@ -4,18 +4,18 @@
 #include <cstddef>
 #include <vector>
 
-#include "facets/draft.h"
+#include "facets/complex_draft.h"
 
 namespace collarmesh::repairing {
 
 /// One of several triangles of a soup with the same corners.
-struct Twin {
-  bool odd;  ///< whether its corners are an odd permutation of the sorted ones; odd and even twins have
+struct DuplicateTriangle {
+  bool odd;  ///< whether its corners are an odd permutation of the sorted ones; odd and even duplicates have
              ///< opposite orientations
   Index triangle;
 
-  friend bool operator==(const Twin& a, const Twin& b) = default;
-  friend bool operator<(const Twin& a, const Twin& b) {
+  friend bool operator==(const DuplicateTriangle& a, const DuplicateTriangle& b) = default;
+  friend bool operator<(const DuplicateTriangle& a, const DuplicateTriangle& b) {
     return a.odd != b.odd ? b.odd : a.triangle < b.triangle;
   }
 };
@@ -25,16 +25,16 @@ bool is_odd(const facets::Corners& corners);
 
 /// Returns which triangles cancel, given all triangles of one soup with the same corners: pairs of opposite
 /// orientation; in a complex, where orientation has no meaning, all but one.
-std::vector<Index> cancelled_among(std::vector<Twin> twins, bool in_complex);
+std::vector<Index> cancelled_among(std::vector<DuplicateTriangle> duplicates, bool in_complex);
 
 /// Drops cancelled triangles and returns their number. Cost: O(n log n).
-std::size_t cancel_twins(facets::Draft& draft);
+std::size_t cancel_duplicates(facets::ComplexDraft& draft);
 
 /// Returns whether the oriented surface encloses no volume, like a surface that is double everywhere.
-bool is_two_sided(const facets::Draft& draft);
+bool is_two_sided(const facets::ComplexDraft& draft);
 
 /// In closed, consistently oriented surfaces that consist of pairs of opposite copies, keeps one copy of each
 /// pair. Returns the number of dropped triangles. Cost: O(n log n).
-std::size_t keep_one_side(facets::Draft& draft);
+std::size_t keep_one_side(facets::ComplexDraft& draft);
 
 }  // namespace collarmesh::repairing

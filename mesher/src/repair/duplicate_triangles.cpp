@@ -1,4 +1,4 @@
-#include "repair/twins.h"
+#include "repair/duplicate_triangles.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,16 +16,19 @@ using namespace facets;
 
 bool is_odd(const Corners& c) { return (c[0] > c[1]) != ((c[1] > c[2]) != (c[0] > c[2])); }
 
-std::vector<Index> cancelled_among(std::vector<Twin> twins, bool in_complex) {
+std::vector<Index> cancelled_among(std::vector<DuplicateTriangle> duplicates, bool in_complex) {
   std::vector<Index> cancelled;
-  if (twins.size() < 2) return cancelled;
-  std::sort(twins.begin(), twins.end());
+  if (duplicates.size() < 2) return cancelled;
+  std::sort(duplicates.begin(), duplicates.end());
   if (in_complex) {
-    for (auto twin = twins.begin() + 1; twin != twins.end(); ++twin) cancelled.push_back(twin->triangle);
+    for (auto duplicate = duplicates.begin() + 1; duplicate != duplicates.end(); ++duplicate)
+      cancelled.push_back(duplicate->triangle);
     return cancelled;
   }
-  const auto middle = std::find_if(twins.begin(), twins.end(), [](const Twin& twin) { return twin.odd; });
-  for (auto even = twins.begin(), odd = middle; even != middle && odd != twins.end(); ++even, ++odd) {
+  const auto middle = std::find_if(duplicates.begin(), duplicates.end(),
+                                   [](const DuplicateTriangle& duplicate) { return duplicate.odd; });
+  for (auto even = duplicates.begin(), odd = middle; even != middle && odd != duplicates.end();
+       ++even, ++odd) {
     cancelled.push_back(even->triangle);
     cancelled.push_back(odd->triangle);
   }
@@ -36,7 +39,7 @@ namespace {
 
 // Visits groups of triangles of one soup with the same corners.
 template <class Visit>
-void for_each_group(const Draft& draft, const Visit& visit) {
+void for_each_group(const ComplexDraft& draft, const Visit& visit) {
   struct Key {
     Corners corners;
     Index soup, triangle;
@@ -49,19 +52,19 @@ void for_each_group(const Draft& draft, const Visit& visit) {
   std::sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) {
     return std::tie(a.corners, a.soup, a.triangle) < std::tie(b.corners, b.soup, b.triangle);
   });
-  std::vector<Twin> twins;
+  std::vector<DuplicateTriangle> duplicates;
   for (auto first = keys.begin(); first != keys.end();) {
-    twins.clear();
+    duplicates.clear();
     auto last = first;
     for (; last != keys.end() && last->corners == first->corners && last->soup == first->soup; ++last)
-      twins.push_back({is_odd(draft.triangles[last->triangle]), last->triangle});
-    if (twins.size() > 1) visit(twins);
+      duplicates.push_back({is_odd(draft.triangles[last->triangle]), last->triangle});
+    if (duplicates.size() > 1) visit(duplicates);
     first = last;
   }
 }
 
 // Removes triangles. Returns their number.
-std::size_t drop(Draft& draft, const std::vector<bool>& removed) {
+std::size_t drop(ComplexDraft& draft, const std::vector<bool>& removed) {
   std::size_t kept = 0;
   for (Index t = 0; t < draft.triangles.size(); ++t) {
     if (removed[t]) continue;
@@ -75,7 +78,7 @@ std::size_t drop(Draft& draft, const std::vector<bool>& removed) {
 }
 
 // Returns the components of triangles that are connected by common corners, as sets of points.
-DisjointSets components_of(const Draft& draft) {
+DisjointSets components_of(const ComplexDraft& draft) {
   DisjointSets sets(draft.points.size());
   for (const Corners& t : draft.triangles) {
     sets.unite(t[0], t[1]);
@@ -86,16 +89,17 @@ DisjointSets components_of(const Draft& draft) {
 
 }  // namespace
 
-std::size_t cancel_twins(Draft& draft) {
+std::size_t cancel_duplicates(ComplexDraft& draft) {
   std::vector<bool> removed(draft.triangles.size(), false);
-  for_each_group(draft, [&](const std::vector<Twin>& twins) {
-    for (const Index t : cancelled_among(twins, draft.soup_is_complex[draft.origins[twins[0].triangle].soup]))
+  for_each_group(draft, [&](const std::vector<DuplicateTriangle>& duplicates) {
+    for (const Index t :
+         cancelled_among(duplicates, draft.soup_is_complex[draft.origins[duplicates[0].triangle].soup]))
       removed[t] = true;
   });
   return drop(draft, removed);
 }
 
-bool is_two_sided(const Draft& draft) {
+bool is_two_sided(const ComplexDraft& draft) {
   constexpr double least = 1e-6;  // volume relative to that of a box with the surface's area
   const Point centre = draft.bounds.centre();
   double six = 0, area = 0;
@@ -106,11 +110,11 @@ bool is_two_sided(const Draft& draft) {
   return std::fabs(six) < least * std::pow(area, 1.5);
 }
 
-std::size_t keep_one_side(Draft& draft) {
+std::size_t keep_one_side(ComplexDraft& draft) {
   std::vector<bool> second(draft.triangles.size(), false);
-  for_each_group(draft, [&](std::vector<Twin> twins) {
-    std::sort(twins.begin(), twins.end());
-    for (std::size_t i = 1; i < twins.size(); ++i) second[twins[i].triangle] = true;
+  for_each_group(draft, [&](std::vector<DuplicateTriangle> duplicates) {
+    std::sort(duplicates.begin(), duplicates.end());
+    for (std::size_t i = 1; i < duplicates.size(); ++i) second[duplicates[i].triangle] = true;
   });
   DisjointSets component = components_of(draft);
   std::vector<bool> closed(draft.points.size(), true);

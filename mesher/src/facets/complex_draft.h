@@ -10,8 +10,7 @@
 #include "collarmesh/plc.h"
 #include "collarmesh/polygon_soup.h"
 
-/// The complex while `build_plc` makes it: welded points, triangles, explicit segments and points. Each step
-/// of the builder has its own file.
+/// The steps that turn soups into the draft of a complex. Each step has its own file.
 namespace collarmesh::facets {
 
 /// The corners of a triangle. Its side i is the edge from corner i to corner i + 1.
@@ -39,7 +38,9 @@ struct Claim {
   Index soup = 0;
 };
 
-struct Draft {
+/// A complex under construction: welded points, triangles with their origins in the soups, explicit segments
+/// and points. `build_plc` and `repair` change it step by step, so facets may still intersect.
+struct ComplexDraft {
   std::vector<Point> points;
   std::vector<Tag> point_tags;
   std::vector<Corners> triangles;
@@ -72,10 +73,10 @@ struct Draft {
 };
 
 /// Returns half the cross product of two sides.
-inline Vector area_vector(const Draft& draft, const Corners& t) {
+inline Vector area_vector(const ComplexDraft& draft, const Corners& t) {
   return 0.5 * cross(draft.points[t[1]] - draft.points[t[0]], draft.points[t[2]] - draft.points[t[0]]);
 }
-inline double area_of(const Draft& draft, const Corners& t) { return norm(area_vector(draft, t)); }
+inline double area_of(const ComplexDraft& draft, const Corners& t) { return norm(area_vector(draft, t)); }
 
 inline Index back_side(Index triangle) { return 2 * triangle; }
 inline Index front_side(Index triangle) { return 2 * triangle + 1; }
