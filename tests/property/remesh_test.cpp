@@ -13,6 +13,7 @@
 #include "collarmesh/mesh_measures.h"
 #include "collarmesh/remesh.h"
 #include "common/sorted.h"
+#include "constrained/constrained_tetrahedra.h"
 #include "remesh/operations.h"
 #include "support/meshes.h"
 #include "support/shapes.h"
@@ -326,6 +327,18 @@ TEST(Remesh, MakesBadTetsGood) {
   EXPECT_GT(made.check.min_dihedral, 12);
   EXPECT_LT(made.check.max_dihedral, 150);
   EXPECT_EQ(made.remeshing.smallest_angle_before, before.min_dihedral);
+}
+
+// Triangulations of nothing but the vertices of the surface, as other programs write them: nearly all tets are
+// needles and slivers.
+TEST(Remesh, MakesTriangulationsOfASurfaceGood) {
+  for (const PolygonSoup& soup : {plate_with_hole(0.2, 40), torus(3, 1, 24, 12), cylinder(1, 3, 32, 5)}) {
+    const ConstrainedTetrahedra given = constrained_tetrahedra(build_plc(std::vector{soup}));
+    const RemeshResult made = remesh(without_features(given.mesh), of_size(0));
+    EXPECT_EQ(faults(made), "");
+    EXPECT_LT(made.remeshing.smallest_angle_before, 3);
+    expect_near(volumes(given.mesh), volumes(made.result.mesh), 0.02);
+  }
 }
 
 TEST(Remesh, FindsFeaturesOfAMeshWithoutTags) {

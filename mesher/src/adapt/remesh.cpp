@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <functional>
+#include <memory>
 #include <utility>
 
+#include "adapt/bring_to_size.h"
 #include "adapt/edge_division.h"
 #include "adapt/mesh_complex.h"
 #include "adapt/smooth_geometry.h"
@@ -51,6 +53,9 @@ constexpr double no_ratio = 0.1;
 // points between those where they measure it, and for moves onto exact geometry. `angle_reserve` is the share
 // of the bounds on angles that is kept in reserve for these moves.
 constexpr double distance_left = 0.75, angle_reserve = 0.05;
+constexpr unsigned most_rounds_of_poor = 4;
+// If more than this share of the tets misses the bounds on angles, the whole mesh is brought to its size first.
+constexpr double mostly = 0.1;
 // If the smallest angle of a mesh, away from creases and narrow places, is at least this (degrees), the mesh
 // keeps it.
 constexpr double good_angle = 15;
@@ -148,13 +153,21 @@ class Remeshing {
       }
   }
 
-  bool angles_are_within(double smallest) {
-    const ThinShape thin(made_.plc, mesh(), smallest, 0,
-                         forced_edges_of(made_.plc, mesh(), options_.mesh.bounds.lower_where_forced));
+  /// Returns whether every tet keeps the bounds for this smallest angle, which creases and short edges of the
+  /// surface may lower.
+  bool angles_are_within(double smallest) { return count_beyond(smallest, forced_edges()) == 0; }
+
+  std::shared_ptr<const ForcedEdges> forced_edges() {
+    return forced_edges_of(made_.plc, mesh(), options_.mesh.bounds.lower_where_forced);
+  }
+
+  /// Returns the number of tets with angles beyond the bounds for this smallest angle.
+  std::size_t count_beyond(double smallest, std::shared_ptr<const ForcedEdges> forced) {
+    const ThinShape thin(made_.plc, mesh(), smallest, 0, std::move(forced));
     const auto& p = mesh().points;
-    return std::ranges::all_of(mesh().tets, [&](const std::array<Index, 4>& v) {
-      return thin.contains({p[v[0]], p[v[1]], p[v[2]], p[v[3]]}, v);
-    });
+    return static_cast<std::size_t>(std::ranges::count_if(mesh().tets, [&](const std::array<Index, 4>& v) {
+      return !thin.contains({p[v[0]], p[v[1]], p[v[2]], p[v[3]]}, v);
+    }));
   }
 
   void measure_before() {
@@ -199,6 +212,8 @@ class Remeshing {
 
   void reshape() {
     if (is_full()) coarsen_and_improve();  // a mesh that is to become coarser may begin above the limit
+    const bool poor = is_mostly_poor();
+    if (poor) bring_to_size();
     for (unsigned pass = 0; pass < most_passes; ++pass) {
       const double from = 0.06 + 0.24 * pass;
       control_.begin("remesh", from, from + 0.12);
@@ -207,9 +222,42 @@ class Remeshing {
       coarsen_and_improve();
       if (static_cast<double>(divided) < least_share * static_cast<double>(mesh().points.size())) break;
     }
+    if (poor) relax();
     smooth(mesh(), made_.plc, kept_, Metric(target_sizes()), control_.execution());
     control_.stop_if_asked(control_.execution().cancelled());
     mark_thin_tets(mesh(), options_.mesh.bounds.radius_edge);
+  }
+
+  /// Returns whether so many tets miss the bounds on angles that improving them one by one is futile, as in a
+  /// triangulation of nothing but the surface's vertices.
+  bool is_mostly_poor() {
+    return static_cast<double>(count_beyond(options_.mesh.bounds.thin_angle, nullptr)) >
+           mostly * static_cast<double>(mesh().tets.size());
+  }
+
+  void bring_to_size() {
+    control_.begin("remesh", 0.06, 0.12);
+    control_.watch([&](const Execution& execution) {
+      adapting::bring_to_size(mesh(), made_.plc, options_kept(), execution);
+    });
+    require_budget();
+  }
+
+  /// Divides edges so that vertices face each other, and coarsens again, while fewer tets miss the bounds.
+  void relax() {
+    std::size_t fewest = count_beyond(options_.mesh.bounds.thin_angle, forced_edges());
+    for (unsigned round = 0; round < most_rounds_of_poor && fewest > 0; ++round) {
+      TetMesh before = mesh();
+      control_.watch([&](const Execution& execution) {
+        adapting::relax(mesh(), made_.plc, options_kept(), execution);
+      });
+      require_budget();
+      coarsen_and_improve();
+      const std::size_t now = count_beyond(options_.mesh.bounds.thin_angle, forced_edges());
+      if (now >= fewest) mesh() = std::move(before);
+      if (now >= fewest) return;
+      fewest = now;
+    }
   }
 
   EditableMesh edited() { return {mesh(), made_.plc, options_.mesh.bounds, options_.mesh.edges_per_hole}; }

@@ -29,18 +29,7 @@ struct SurfaceOptions {
   std::string curve_property = curve_tag;
   /// Vertex property: where it is not 0, the vertex becomes a feature with this tag.
   std::string vertex_property = vertex_tag;
-  bool feature_edges = true;       ///< edges with the feature bit of their status are curves
-};                                 ///< name in messages
-std::optional<Tag> region = {};    ///< tag of the regions that this surface bounds; none: their
-                                   ///< number
-std::string region_property = {};  ///< face property: faces with the same value form a separate
-                                   ///< surface, and the value becomes the tag of its regions; empty: one
-                                   ///< surface
-std::string patch_property = patch_tag;  ///< face property: tag of the patch
-std::string curve_property = curve_tag;  ///< edge property: a value other than 0 makes a curve with that tag
-std::string vertex_property = vertex_tag;  ///< vertex property: where it is not 0, the vertex becomes
-                                           ///< a feature with this tag
-bool feature_edges = true;                 ///< edges with the feature bit of their status are curves
+  bool feature_edges = true;  ///< edges with the feature bit of their status are curves
 };
 
 /// Counts of the contents of an OpenMesh mesh. None of them is an error by itself: `build_plc` decides.
