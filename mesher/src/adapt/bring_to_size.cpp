@@ -28,6 +28,9 @@ constexpr unsigned most_halvings = 12;
 constexpr double around = 0.3;
 // Edges longer than this factor times the target are divided.
 constexpr double longest = coarsening::CoarseningRule::longest_new;
+// Seeds differ in this factor: each is smaller than that of the seed before by this share, `seeds` in turn.
+constexpr double less_by_seed = 0.03;
+constexpr unsigned seeds = 4;
 
 // An edge beside a short edge may be `of_shortest` times as long; from there edges may grow by `growth` per
 // unit of distance.
@@ -41,6 +44,7 @@ class Bringing {
   Bringing(TetMesh& mesh, const Plc& plc, MeshOptions options, const Execution& execution)
       : mesh_(mesh), plc_(plc), options_(std::move(options)), execution_(execution) {
     options_.edges_per_hole = 0;  // asks for no further edges around holes
+    longest_ = longest * (1 - less_by_seed * static_cast<double>(options_.seed % seeds));
   }
 
   bool run() {
@@ -129,7 +133,7 @@ class Bringing {
       const std::size_t divided = edit([&](EditableMesh& edited) {
         EdgeDivision division(edited, options_, sizes());
         division.divide_facing();
-        return division.divide_all(longest, options_.max_vertices, execution_);
+        return division.divide_all(longest_, options_.max_vertices, execution_);
       });
       if (divided == 0) break;
       relax([](Relaxation& relaxation) { relaxation.collapse_short(around); });
@@ -155,7 +159,7 @@ class Bringing {
   std::size_t divide() {
     return edit([&](EditableMesh& edited) {
       return EdgeDivision(edited, options_, graded_sizes())
-          .divide_all(longest, options_.max_vertices, execution_);
+          .divide_all(longest_, options_.max_vertices, execution_);
     });
   }
 
@@ -163,6 +167,7 @@ class Bringing {
   const Plc& plc_;
   MeshOptions options_;
   const Execution& execution_;
+  double longest_;
 };
 
 }  // namespace

@@ -179,7 +179,8 @@ void tetrahedralize(MeshJob& job) {
   MeshResult& result = job.made.result;
   job.neighbours = KnownNeighbours();
   result.has_narrow_cells = job.refined_with.bounds.lower_where_forced = true;
-  if (is_good_with_ladders(job)) return;
+  // Meshes with ladders do not depend on the seed.
+  if (job.refined_with.seed == job.given.mesh.seed && is_good_with_ladders(job)) return;
   fill(job, *job.plc);
   job.control.begin("remesh", 0.2, 0.6);
   bool brought = false;

@@ -284,6 +284,7 @@ std::optional<PipelineResult> MeshMaker::from_constrained(const Plc& plc, const 
       come_nearer(plc, share);
       make(plc, given.mesh.seed);
     }
+    try_seeds_of_constrained(plc);
     made.check.notes.push_back(
         fmt::format("begun with constrained tetrahedra, because without them: {}", why));
     if (std::ranges::all_of(made.check.findings, is_about_shape)) found = std::move(made);
@@ -297,6 +298,36 @@ std::optional<PipelineResult> MeshMaker::from_constrained(const Plc& plc, const 
   if (!found) nearer_ = nearer;
   made = std::move(before);
   return found;
+}
+
+void MeshMaker::try_seeds_of_constrained(const Plc& plc) {
+  constexpr std::size_t few = 20;
+  constexpr double share_of_time = 0.5;
+  PipelineResult& made = job_.made;
+  const auto misses_few_shapes = [&] {
+    const CheckReport& check = made.check;
+    return check.findings_total > 0 && check.findings_total <= few &&
+           std::ranges::all_of(check.findings, is_about_shape);
+  };
+  const std::uint64_t first = job_.given.mesh.seed;
+  for (std::uint64_t seed = first + 1; seed < first + job_.given.seeds && misses_few_shapes(); ++seed) {
+    PipelineResult kept = std::exchange(made, {});
+    bool better = false;
+    job_.control.attempt(share_of_time, [&] {
+      try {
+        make(plc, seed);
+        better = made.check.findings_total < kept.check.findings_total;
+      } catch (const Hopeless&) {
+      } catch (const Ended&) {
+        if (made.result.status == MeshStatus::cancelled) throw;
+      }
+    });
+    if (better)
+      made.check.notes.push_back(
+          fmt::format("made with seed {}, because with seed {}: {}", seed, first, kept.missed()));
+    else
+      made = std::move(kept);
+  }
 }
 
 void MeshMaker::take_new_complex() {

@@ -44,6 +44,10 @@ class MeshMaker {
   /// many tets miss these. The job keeps its mesh.
   std::optional<PipelineResult> from_constrained(const Plc& plc, const std::string& why, Hope hope);
 
+  /// If few tets of a mesh made from constrained tetrahedra miss the bounds on their shapes, and nothing else
+  /// is missed, makes it again with further seeds. Keeps the mesh with fewer findings.
+  void try_seeds_of_constrained(const Plc& plc);
+
   /// Uses a mesh made from the constrained tetrahedra if it keeps every guarantee and, if `lengths` asks for
   /// it, the target lengths. Returns whether it does. Tries each complex only once.
   bool take_constrained(const Plc& plc, const std::string& why, Lengths lengths = Lengths::any);
@@ -55,7 +59,8 @@ class MeshMaker {
   /// Returns whether the last mesh was refined to many times the predicted number of tets, and coarsened.
   bool was_far_too_fine() const { return was_far_too_fine_; }
 
-  /// Returns whether another seed may change the kept mesh. Constrained tetrahedra do not depend on it.
+  /// Returns whether the kept mesh was refined, so that another seed changes it. Further seeds of constrained
+  /// tetrahedra have been tried already.
   bool depends_on_seed() const { return !is_constrained_ && job_.start != Start::constrained; }
 
   /// Multiplies the surface tolerance of first order by this share in further meshes of this complex.

@@ -84,7 +84,10 @@ void Tries::mesh(const Plc& plc) {
     job_.budget.bound(Ways::none);
     maker_.make_anyhow(plc, why);
   }
-  try_seeds(plc);
+  if (job_.start == Start::constrained)
+    maker_.try_seeds_of_constrained(plc);
+  else if (end != End::missed || !come_nearer_where_missed(plc))
+    try_seeds(plc);
   keep_volumes(plc);
 }
 
@@ -102,7 +105,8 @@ void Tries::mesh_any_repaired(SoupPipelineResult& all) {
   const std::string sharp = repair_sharp_creases(current, all);
   if (job_.start == Start::constrained) {
     job_.budget.bound(Ways::none);
-    return maker_.make(all.plc, given.mesh.seed);
+    maker_.make(all.plc, given.mesh.seed);
+    return maker_.try_seeds_of_constrained(all.plc);
   }
   job_.budget.bound(Ways::others);
   std::exception_ptr error;
