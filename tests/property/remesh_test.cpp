@@ -329,8 +329,8 @@ TEST(Remesh, MakesBadTetsGood) {
   EXPECT_EQ(made.remeshing.smallest_angle_before, before.min_dihedral);
 }
 
-// Triangulations of nothing but the vertices of the surface, as other programs write them: nearly all tets are
-// needles and slivers.
+// Triangulations of nothing but the vertices of the surface, as other programs write them: nearly all tets
+// are needles and slivers.
 TEST(Remesh, MakesTriangulationsOfASurfaceGood) {
   for (const PolygonSoup& soup : {plate_with_hole(0.2, 40), torus(3, 1, 24, 12), cylinder(1, 3, 32, 5)}) {
     const ConstrainedTetrahedra given = constrained_tetrahedra(build_plc(std::vector{soup}));

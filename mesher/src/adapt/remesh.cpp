@@ -54,7 +54,8 @@ constexpr double no_ratio = 0.1;
 // of the bounds on angles that is kept in reserve for these moves.
 constexpr double distance_left = 0.75, angle_reserve = 0.05;
 constexpr unsigned most_rounds_of_poor = 4;
-// If more than this share of the tets misses the bounds on angles, the whole mesh is brought to its size first.
+// If more than this share of the tets misses the bounds on angles, the whole mesh is brought to its size
+// first.
 constexpr double mostly = 0.1;
 // If the smallest angle of a mesh, away from creases and narrow places, is at least this (degrees), the mesh
 // keeps it.
@@ -248,9 +249,8 @@ class Remeshing {
     std::size_t fewest = count_beyond(options_.mesh.bounds.thin_angle, forced_edges());
     for (unsigned round = 0; round < most_rounds_of_poor && fewest > 0; ++round) {
       TetMesh before = mesh();
-      control_.watch([&](const Execution& execution) {
-        adapting::relax(mesh(), made_.plc, options_kept(), execution);
-      });
+      control_.watch(
+          [&](const Execution& execution) { adapting::relax(mesh(), made_.plc, options_kept(), execution); });
       require_budget();
       coarsen_and_improve();
       const std::size_t now = count_beyond(options_.mesh.bounds.thin_angle, forced_edges());

@@ -226,7 +226,7 @@ void check_curves(const MeshToCheck& to_check, CheckReport& report, Findings& fi
                    At{where}, mesh.edge_tag[e]);
     else if (mesh.edge_tag[e] != to_check.plc.curves[curve].tag)
       findings.add(guarantee::curve_tag, where, {e},
-                   "Edge {} at {} has tag {}, its curve {} has {}; correct the tag or the curve.", e,
+                   "Edge {} at {} has tag {}, but its curve {} has tag {}; correct the tag or the curve.", e,
                    At{where}, mesh.edge_tag[e], curve, to_check.plc.curves[curve].tag);
   }
   const Grouping by_curve(to_check.match.edge_curve, to_check.plc.curves.size());

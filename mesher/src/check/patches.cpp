@@ -177,7 +177,7 @@ void check_labels(const MeshToCheck& to_check, Index face, Findings& findings) {
   const Plc::Patch& patch = to_check.plc.patches[id];
   if (mesh.face_tag[face] != patch.tag)
     findings.add(guarantee::patch_tag, where, {face},
-                 "Face {} at {} has tag {}, its patch {} has {}; correct the tag or the patch.", face,
+                 "Face {} at {} has tag {}, but its patch {} has tag {}; correct the tag or the patch.", face,
                  At{where}, mesh.face_tag[face], id, patch.tag);
   const auto& regions = mesh.face_regions[face];
   if (regions != patch.regions && !reversed(to_check, face))

@@ -149,7 +149,7 @@ void check_region_tag(Index tet, const CornersOfTet& p, const MeshToCheck& to_ch
   const bool unknown = to_check.mesh.features.empty() && tag == static_cast<Tag>(region);
   if (tag != expected && !unknown)
     findings.add(guarantee::region_tag, p.centre(), {tet},
-                 "Tet {} at {} has tag {}, but its region {} has {}; correct the tag or the region.", tet,
+                 "Tet {} at {} has tag {}, but its region {} has tag {}; correct the tag or the region.", tet,
                  At{p.centre()}, tag, region, expected);
 }
 

@@ -395,8 +395,8 @@ RodSection Rod::at_share(double share) const {
   return between;
 }
 
-/// Finds the angle by which frames are turned, so that the last ring begins at the vertex there, or fits to
-/// the first ring.
+/// Finds the angle by which frames are turned over the whole length. Thus turned, the last ring begins at the
+/// vertex of the second end or, in a loop, fits the first ring.
 void Rod::find_turn(std::size_t parts_of_turn) {
   if (!is_loop() && plc_.patches[ends_[1].patch].vertices.empty()) return;
   const double piece = full_turn / static_cast<double>(parts_of_turn);

@@ -33,8 +33,8 @@ Matrix product(const Matrix& a, const Matrix& b) {
   return result;
 }
 
-/// The displacement of a node as a sum: shares of the displacements of its chain's root and of the reference
-/// nodes.
+/// The displacement of a node as a weighted sum of displacements: those of the first node of its chain of
+/// images (`root`) and of the reference nodes. The weights are matrices.
 struct Shares {
   Matrix root = identity;
   std::map<std::size_t, Matrix> references;  ///< by pair

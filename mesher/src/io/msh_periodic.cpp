@@ -19,7 +19,7 @@ bool contains(const std::vector<Tag>& tags, Tag tag) {
   return std::find(tags.begin(), tags.end(), tag) != tags.end();
 }
 
-/// The links of one pair.
+/// The links of one pair of groups of periodic faces.
 class PairLinks {
  public:
   PairLinks(const TetMesh& mesh, const MshEntities& entities, const TetMesh::PeriodicFaces& pair)

@@ -212,7 +212,7 @@ class GridMaker {
 /// The cells of one piece by kind, as positions in its arrays.
 using CellKinds = PerKind<std::vector<std::size_t>>;
 
-/// The kind of cells as which a VTK cell type is read.
+/// The kind of cells that a VTK cell type stands for, and their number of nodes.
 struct ReadType {
   std::size_t nodes = 1;
   std::optional<CellKind> kind;  ///< nothing: a point, which is skipped

@@ -36,7 +36,8 @@ RodCavity::RodCavity(MeshAroundRods& around, Index rod, double room)
   find_walls();
 }
 
-/// Returns whether a tet has a place within this distance from the axis, looking at small pieces of it.
+/// Returns whether some place in a tet is within this distance of the axis. Halves the tet until its pieces
+/// are small, and tests their centres.
 bool RodCavity::comes_within(double bound, const std::array<Point, 4>& p) const {
   const Point middle = (p[0] + p[1] + p[2] + p[3]) / 4;
   double radius = 0, longest = 0;

@@ -412,8 +412,8 @@ double Tries::largest_loss(const Plc& plc, std::vector<double>* shares) const {
   return largest;
 }
 
-/// If nothing but volumes and thicknesses misses its limit, makes the mesh again, nearer to the smooth patches
-/// where they do. Returns whether every guarantee holds then.
+/// If nothing but volumes and thicknesses misses its limit, makes the mesh again, nearer to the smooth
+/// patches where they do. Returns whether every guarantee holds then.
 bool Tries::come_nearer_where_missed(const Plc& plc) {
   constexpr double least = 0.25;
   PipelineResult& made = job_.made;

@@ -41,9 +41,9 @@ double squares_on(const Plc& plc, const Plc::Patch& patch, double size, const Su
   return squares;
 }
 
-/// Returns the area that a patch has in squares whose sides are the longest chords that keep the tolerance,
-/// or the size if it is shorter. Chords of folds, which turn sharply, are as long as the tolerance permits
-/// anywhere.
+/// Returns how many squares have the area of the patch's curved triangles. The side of a square is the
+/// longest chord that keeps the tolerance or, if that is shorter, the size. Where the radius of curvature is
+/// below the tolerance, as in folds, the tolerance is taken as the radius.
 double squares_of_chords(const Plc& plc, const Plc::Patch& patch, double size,
                          const SurfaceTolerance& tolerance) {
   if (patch.planar) return 0;

@@ -76,7 +76,7 @@ double Shape::wall_width(const Point& p, Index triangle, double widest) const {
     if (plc_.patches[patch].regions[side] == 0) continue;
     const Vector way = (side == 0 ? -1 : 1) / norm(normal) * normal;
     const Index root = surface_.root();
-    // Starts off the plane of the triangle, which would cause ties.
+    // The ray starts at a small distance from the triangle, because a start in its plane would cause ties.
     surface_.crossings(p + 1e-6 * widest * way, p + widest * way, {&root, 1}, crossings);
     for (const auto& [other, direction] : crossings) {
       if (other == triangle || patches_meet(patch, plc_.triangles[other].patch)) continue;

@@ -93,7 +93,8 @@ class CurveChains {
   void split_ahead(const Split& split);
   /// Removes the ball of a subsegment before the vertex that splits it is inserted, possibly inside the ball.
   void drop_ball(const Split& split);
-  /// Splits a subsegment by a mesh vertex at the place. Precondition: the vertex was reported to the sizes.
+  /// Splits a subsegment by a mesh vertex at the place of the split. Precondition: `GradedSizes` has the
+  /// vertex's size.
   void split_at(const Split& split, Index vertex);
   /// Queues again a subsegment that is too coarse, if it still exists after another insertion.
   void queue_again(const Split& split);

@@ -69,8 +69,8 @@ std::vector<Domain::TinyEdge> Domain::tiny_edges() const {
   return found;
 }
 
-// Returns the floor at a place. Queries are rare (elsewhere the ball is below the floor of the whole domain),
-// so all tiny edges are tested.
+// Returns the floor at a place. Tests all tiny edges, because queries are rare: `at_floor` makes one only for
+// a ball below the floor of the whole domain.
 double Domain::floor_at(const Point& p) const {
   double edge = tiny_per_diagonal * diagonal;
   for (const auto& [middle, length] : tiny_edges_)

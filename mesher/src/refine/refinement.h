@@ -51,7 +51,7 @@ class Refinement {
 
   /// For tests: sets a function to call whenever no skinny cell is left, before anything else is inserted.
   void observe_quality_phases(std::function<void()> observer) { observer_ = std::move(observer); }
-  /// For tests: sets a function to call for every ball at the time when it is created in the pass.
+  /// For tests: sets a function to call for every collar ball as soon as refinement creates it.
   void observe_collars(std::function<void(const CollarBall&)> observer) {
     collar_creator_.observe(std::move(observer));
   }

@@ -28,8 +28,8 @@ struct OpenEdges {
 OpenEdges find_open_edges(const ComplexDraft& draft) {
   OpenEdges open;
   const EdgeTable edges(draft.triangles, draft.points.size());
-  std::vector<std::pair<Index, int>> balance;  // soup, and number of uses in ascending minus descending
-                                               // direction
+  std::vector<std::pair<Index, int>> balance;  // a soup, and how many more of its triangles have the
+                                               // edge in ascending than in descending direction
   for (Index e = 0; e < edges.size(); ++e) {
     balance.clear();
     for (const Index side : edges.sides(e)) {

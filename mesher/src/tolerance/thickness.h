@@ -17,21 +17,23 @@ class Thickness {
   /// Keeps the complex by reference. Cost: near linear in the triangles.
   explicit Thickness(const Plc& plc);
 
-  /// A ray from the centre of a triangle along its smooth normal.
+  /// A ray from the centre of a triangle along its smooth normal. That triangle's patch is the ray's first
+  /// patch.
   struct Ray {
     Point from;
     Vector way;  ///< unit vector; zero if the normal is unknown
   };
   struct Opposite {
     double distance = INFINITY;
-    Index triangle = none;  ///< triangle where the region ends; none if it has no end, or ends at a slant
+    Index triangle = none;  ///< triangle where the ray leaves the region; none if it meets none
     unsigned side = 0;      ///< side of that triangle on which the region lies
     double facing = 0;      ///< cosine of the angle between the ray and that triangle's normal
   };
   struct Opposites {
-    Opposite apart;         ///< nearest end at a patch that does not meet the triangle's patch in a crease
-    Opposite first;         ///< first end of the region, at any patch and any slant
-    bool is_wedge = false;  ///< whether the two patches meet in a crease there
+    Opposite apart;         ///< nearest such triangle that is not at a slant, of a patch that does not
+                            ///< meet the ray's first patch in a crease
+    Opposite first;         ///< nearest such triangle, of any patch and at any angle to the ray
+    bool is_wedge = false;  ///< whether the patch of `first` meets the ray's first patch in a crease
   };
   /// Scratch space of a thread.
   using Crossings = std::vector<TriangleHierarchy::Crossing>;

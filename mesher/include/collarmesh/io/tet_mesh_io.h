@@ -38,7 +38,7 @@ std::vector<std::string> formats_of_first_order();
 /// Returns the extensions of formats that hold prisms and pyramids of an order, 1 or 2.
 std::vector<std::string> formats_with_layers(int order);
 
-/// Returns the extensions of formats that hold meshes of triangles alone, and of curve edges alone.
+/// Returns the extensions of formats that can hold a mesh of triangles alone or of curve edges alone.
 std::vector<std::string> formats_of_surfaces();
 
 /// Returns a sentence about a format that this program was built without, with the library to install; empty
