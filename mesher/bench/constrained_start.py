@@ -70,7 +70,8 @@ def measure(program: Path, path: Path, cpu_limit: int, peer_limit: float) -> dic
             row |= {"start": told["seconds"].get("tetrahedralize", 0), "message": told["message"],
                     "triangles": (told["complex"] or {}).get("triangles", 0) if "complex" in told else 0,
                     "added": (told.get("statistics") or {}).get("vertices_inserted"),
-                    "missed": sorted({finding["guarantee"] for finding in (told.get("check") or {}).get("findings", [])})}
+                    "missed": sorted({finding["guarantee"]
+                                      for finding in (told.get("check") or {}).get("findings", [])})}
         if (folder / "mesh.mesh").exists():
             angles = angles_of(folder / "mesh.mesh")
             beyond = (angles[:, 0] < bounds[0]) | (angles[:, 1] > bounds[1])

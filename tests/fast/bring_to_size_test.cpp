@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "collarmesh/surface_tolerance.h"
 #include "support/meshing.h"
@@ -41,6 +42,20 @@ TEST(BringToSize, IsTheSameForAnyNumberOfThreads) {
     EXPECT_EQ(mesh.tets, alone.tets);
     EXPECT_EQ(mesh.points, alone.points);
   }
+}
+
+// Where a few tets stay poor with one seed, those of another one may be good.
+TEST(BringToSize, DependsOnTheSeed) {
+  const Meshed made = mesh_of(box(), with_size(0.8));
+  MeshOptions options = with_size(0.2);
+  options.bounds.tolerance = tolerance_of(made.plc, options.bounds, options.size);
+  std::vector<TetMesh> meshes(2, made.result.mesh);
+  for (unsigned seed = 0; seed < meshes.size(); ++seed) {
+    options.seed = seed;
+    ASSERT_TRUE(remeshing::adapting::bring_to_size(meshes[seed], made.plc, options, {}));
+    EXPECT_GT(meshes[seed].tets.size(), 10 * made.result.mesh.tets.size());
+  }
+  EXPECT_NE(meshes[0].points, meshes[1].points);
 }
 
 }  // namespace
