@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <span>
 
@@ -504,6 +505,9 @@ class Placement {
 }  // namespace
 
 std::optional<TetMesh> place_by_position(const Subject& subject, CheckReport& report, Findings& findings) {
+  assert(subject.mesh.tet_region.size() == subject.mesh.tets.size() &&
+         subject.mesh.face_tag.size() == subject.mesh.faces.size() &&
+         subject.mesh.edge_tag.size() == subject.mesh.edges.size());
   if (subject.mesh.features.empty()) return Placement(subject, report, findings).run();
   const Numbers numbers(subject);
   if (numbers.fit_faces() && numbers.fit_edges()) return std::nullopt;

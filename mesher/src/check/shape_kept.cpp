@@ -70,7 +70,7 @@ std::string name_of(const Plc& plc, const Shell& shell) {
 }  // namespace
 
 void check_shape_kept(const Subject& subject, CheckReport& report, Findings& findings) {
-  assert(subject.is_matched());
+  assert(subject.is_matched() && report.region_volumes.size() == subject.plc.regions.size());
   const Plc& plc = subject.plc;
   report.of_input = input_sizes(subject);
   const std::vector<Shell> shells = shells_of(plc);
