@@ -1,6 +1,7 @@
 #include "report/html_report.h"
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string_view>
 #include <vector>
 

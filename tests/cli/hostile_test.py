@@ -249,21 +249,28 @@ class Signals(HostileTest):
                 self.assertFalse(self.out.exists())
                 self.assert_nothing_left()
 
+    def bytes_being_written(self):
+        """Returns the size of the largest temporary file, -1 if there is none."""
+        size = -1
+        for folder, _, files in os.walk(self.folder):  # leaves out folders that go away meanwhile
+            for file in files if ".collarmesh-" in folder else []:
+                with contextlib.suppress(FileNotFoundError):
+                    size = max(size, os.path.getsize(os.path.join(folder, file)))
+        return size
+
     def test_while_writing(self):
         """Afterwards there is either the complete old file or the complete new one."""
         self.expect(0, self.box, "-o", self.out, "--size", "0.05", writes=True)
         before = self.out.read_bytes()
         self.expect(0, self.box, "-o", self.out, "--size", "0.04", writes=True)
         after = self.out.read_bytes()
-        for delay in (0, 0.002, 0.005, 0.01, 0.02, 0.05):
+        for share in (0, 0.2, 0.4, 0.6, 0.8, 1):
             self.out.write_bytes(before)
             run = subprocess.Popen([PROGRAM, self.box, "-o", self.out, "--size", "0.04", "-q"],
                                    stderr=subprocess.DEVNULL)
             self.addCleanup(run.kill)
-            # os.walk leaves out folders that go away meanwhile
-            wait_for(lambda: any(files for folder, _, files in os.walk(self.folder) if ".collarmesh-" in folder)
-                     or run.poll() is not None, "it writes", seconds=300)
-            time.sleep(delay)
+            wait_for(lambda: run.poll() is not None or self.bytes_being_written() >= share * len(after), "it writes",
+                     seconds=300)
             run.send_signal(signal.SIGHUP)
             code = run.wait(timeout=60)
             self.assertIn(code, (0, 6, -signal.SIGHUP))
@@ -382,11 +389,27 @@ def has_open(pid, path):
     return False
 
 
+def words_of(pid):
+    """Returns the words of a process's status from its state on; nothing if there is no such process."""
+    with contextlib.suppress(OSError):
+        return pathlib.Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+    return []
+
+
+def state_of(pid):
+    """Returns a letter: T means stopped, Z ended, X that there is no such process."""
+    return (words_of(pid) or "X")[0]
+
+
 def has_ended(pid):
     """Returns whether a process has ended, even if nobody has asked for its exit code yet."""
-    with contextlib.suppress(OSError):
-        return ") Z " in pathlib.Path(f"/proc/{pid}/stat").read_text()
-    return True
+    return state_of(pid) in "ZX"
+
+
+def cpu_seconds(pid):
+    """Returns the CPU time that a process has used so far."""
+    words = words_of(pid)
+    return (int(words[11]) + int(words[12])) / os.sysconf("SC_CLK_TCK") if words else 0
 
 
 @unittest.skipUnless(reads_cad(), "built without OpenCASCADE")
@@ -432,19 +455,23 @@ class CadFilesThatCrash(HostileTest):
         """Whatever kills the child, the program reports it and leaves no files."""
         for number, codes in ((signal.SIGSEGV, (1, 3)), (signal.SIGKILL, (5,))):
             with self.subTest(signal=number):
-                killed = [self.crash_of_the_child(number, codes, delay) for delay in (0, 0.05, 0.2, 0.4, 0.8)]
-                self.assertGreater(sum(killed), 0)
+                killed = [self.crash_of_the_child(number, codes, seconds) for seconds in (0, 0.05, 0.2, 0.4, 0.8)]
+                self.assertTrue(killed[0])
 
-    def crash_of_the_child(self, number, codes, delay):
-        """Sends the signal to the child this long after it began. Returns whether it was in time."""
+    def crash_of_the_child(self, number, codes, seconds):
+        """Sends the signal to the child after this much CPU time. Returns whether it was in time."""
         part = HOSTILE / "iges_closed_face" / "sphere.igs"
         run = subprocess.Popen([PROGRAM, part, "-o", self.out, "--size", "0.3"], stderr=subprocess.PIPE, text=True)
         self.addCleanup(run.kill)
         (child,) = wait_for(lambda: children_of(run.pid), "a child")
-        time.sleep(delay)
-        in_time = not has_ended(child)
+        wait_for(lambda: has_ended(child) or cpu_seconds(child) >= seconds, "the child works")
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(child, signal.SIGSTOP)  # so that it does not end before the signal
+        wait_for(lambda: state_of(child) in "TZX", "the child stops")
+        in_time = state_of(child) == "T"
         if in_time:
             os.kill(child, number)
+            os.kill(child, signal.SIGCONT)
         messages = run.communicate(timeout=100)[1]
         self.assertIn(run.returncode, codes if in_time else (0,), messages)
         self.assertEqual(self.out.exists(), not in_time)

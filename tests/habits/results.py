@@ -1,10 +1,13 @@
 #!/usr/bin/env python3
-"""Reads CTest's results (JUnit): lists the slowest tests, and counts a skipped test as a failure, unless it
-needs something that no package list brings.
+"""Reads CTest's results (JUnit) and its log: lists the slowest tests, and counts a skipped test, or a skipped case of
+one, as a failure, unless it needs something that no package list brings.
 
-    results.py RESULTS.xml
+    results.py RESULTS.xml LOG
+
+LOG is Testing/Temporary/LastTest.log of the build folder: the output of tests that passed, which the results cut short.
 """
 import os
+import pathlib
 import re
 import sys
 import xml.etree.ElementTree
@@ -16,11 +19,40 @@ OTHERS = r"Partition\.WithoutScotch|python\.(install|types)$"
 # Tests with files beside the sources, by the variable that names the folder.
 WITH_FILES = {"COLLARMESH_CORPUS": r".*Corpus|corpus$|acute_families$", "COLLARMESH_REAL": r"real_parts$",
               "COLLARMESH_JUDGE": r"corpus$|acute_families$|real_parts$"}
+# Reasons for which a case of a test in Python may be skipped: it is about a program that lacks something.
+REASONS = ["built with HDF5"]
+REASONS_WITH_FILES = {"COLLARMESH_REAL": ["no CAD files beside the sources"]}
 
 
 def may_be_skipped(name):
     reasons = [OTHERS] + [tests for variable, tests in WITH_FILES.items() if not os.environ.get(variable)]
     return any(re.match(reason, name) for reason in reasons)
+
+
+def is_reason(text):
+    return text in REASONS or any(text in reasons for variable, reasons in REASONS_WITH_FILES.items()
+                                  if not os.environ.get(variable))
+
+
+def outputs(log):
+    """Yields the name and the output of each test of CTest's log."""
+    for part in re.split(r"^\d+/\d+ Testing: ", log, flags=re.M)[1:]:
+        yield part.split("\n", 1)[0], part.split("\n<end of output>", 1)[0]
+
+
+def skipped_cases(log):
+    """Yields a text for each case that a test skipped, and whether it may be skipped."""
+    for name, output in outputs(log):
+        for case in re.findall(r"^\[  SKIPPED \] (\S+)(?:, where GetParam.*)? \(\d+ ms\)$", output, re.M):
+            if case != name:  # not the whole test, which is in the results
+                yield f"{name}: {case}", may_be_skipped(case)
+        # unittest names the reasons only where it names each case (-v), but always says how many there are.
+        reasons = re.findall(r"\bskipped (?:'(.*)'|\"(.*)\")$", output, re.M)
+        for reason in (one or other for one, other in reasons):
+            yield f"{name}: {reason}", is_reason(reason)
+        count = sum(map(int, re.findall(r"^(?:OK|FAILED) \(.*\bskipped=(\d+)", output, re.M)))
+        if count > len(reasons):
+            yield f"{name}: {count} cases without a reason; run it with -v", False
 
 
 def main():
@@ -29,12 +61,13 @@ def main():
     print(f"{len(cases)} tests, {sum(seconds.values()):.0f} s in all; the slowest:")
     for name in sorted(seconds, key=seconds.get, reverse=True)[:SLOWEST]:
         print(f"{seconds[name]:8.1f} s  {name.split('  #')[0]}")
-    skipped = [case.get("name") for case in cases if case.find("skipped") is not None]
-    faults = [name for name in skipped if not may_be_skipped(name)]
-    for name in skipped:
-        print(f"skipped: {name}" + ("; install what it needs (cmake/packages.txt), or leave it out by its label"
-                                    if name in faults else ""))
-    return 1 if faults or not cases else 0
+    skipped = [(case.get("name"), may_be_skipped(case.get("name"))) for case in cases
+               if case.find("skipped") is not None]
+    skipped += skipped_cases(pathlib.Path(sys.argv[2]).read_text(errors="replace"))
+    for name, allowed in skipped:
+        print(f"skipped: {name}" +
+              ("" if allowed else "; install what it needs (cmake/packages.txt), or leave it out by its label"))
+    return 0 if cases and all(allowed for _, allowed in skipped) else 1
 
 
 if __name__ == "__main__":

@@ -158,7 +158,7 @@ def main():
         ours = check_vtk_with_meshio(vtk_file, counts)
         volume = check_vtu_with_meshio(vtu, counts)
         if vtk is None:
-            print("python3-vtk9 is not installed: not tested with VTK")
+            print("reading by VTK ... skipped 'python3-vtk9 is not installed'")
         else:
             check_vtu_with_vtk(vtu, volume)
         read = check_msh_with_meshio("msh by meshio", msh, counts, ours)
@@ -166,7 +166,7 @@ def main():
         check_medit_with_meshio(mesh, counts, ours)
         gmsh = shutil.which("gmsh")
         if gmsh is None:
-            print("gmsh is not installed: not tested with it")
+            print("reading by Gmsh ... skipped 'gmsh is not installed'")
         else:
             for path in (msh, mesh):
                 out = os.path.join(folder, "by_gmsh.msh")

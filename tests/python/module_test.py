@@ -537,13 +537,13 @@ class Stopping(unittest.TestCase):
         with self.assertRaises(KeyError):
             collarmesh.mesh(box((0, 0, 0), (1, 1, 1)), size=0.02, progress=fail)
 
-    def run_script(self, script, after):
-        """Sends Ctrl-C `after` seconds after the script prints that it begins; it must print that it was stopped."""
+    def run_script(self, script, wait=lambda: None):
+        """Sends Ctrl-C when the script has begun and `wait` returned; it must print that it was stopped."""
         process = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE,
                                    stderr=subprocess.PIPE, text=True)
         self.addCleanup(process.kill)
         self.assertEqual(process.stdout.readline().strip(), "begin")
-        time.sleep(after)
+        wait()
         process.send_signal(signal.SIGINT)
         out, err = process.communicate(timeout=60)
         self.assertIn("stopped", out, err)
@@ -567,12 +567,23 @@ try:
     print("ended", flush=True)
 except KeyboardInterrupt:
     print("stopped", flush=True)
-""", 0.05)
+""")
+
+    def wait_for_reader(self, pipe):
+        """Waits until a process reads from a pipe. Returns the pipe, open for writing, so that it waits for data."""
+        end = time.monotonic() + 60
+        while True:
+            try:
+                return os.open(pipe, os.O_WRONLY | os.O_NONBLOCK)
+            except OSError:  # nobody has opened it
+                self.assertLess(time.monotonic(), end)
+                time.sleep(0.002)
 
     def test_interrupt_while_reading(self):
         with tempfile.TemporaryDirectory() as folder:
             endless = os.path.join(folder, "endless.off")
             os.mkfifo(endless)
+            pipes = []
             self.run_script(f"""
 import sys
 sys.path[:0] = {sys.path!r}
@@ -584,7 +595,8 @@ except KeyboardInterrupt:
     print("stopped", flush=True)
 import os
 os._exit(0)
-""", 0.3)
+""", lambda: pipes.append(self.wait_for_reader(endless)))
+            os.close(pipes.pop())
             with self.assertRaisesRegex(collarmesh.BudgetError, "0.2 s .*read"):
                 collarmesh.mesh(endless, time_limit=0.2)
             with open(endless, "w"):

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <span>
 
@@ -506,6 +507,9 @@ class Placement {
 
 std::optional<TetMesh> place_by_position(const MeshToCheck& to_check, CheckReport& report,
                                          Findings& findings) {
+  assert(to_check.mesh.tet_region.size() == to_check.mesh.tets.size() &&
+         to_check.mesh.face_tag.size() == to_check.mesh.faces.size() &&
+         to_check.mesh.edge_tag.size() == to_check.mesh.edges.size());
   if (to_check.mesh.features.empty()) return Placement(to_check, report, findings).run();
   const Numbers numbers(to_check);
   if (numbers.fit_faces() && numbers.fit_edges()) return std::nullopt;

@@ -70,7 +70,7 @@ std::string name_of(const Plc& plc, const Shell& shell) {
 }  // namespace
 
 void check_shape_kept(const MeshToCheck& to_check, CheckReport& report, Findings& findings) {
-  assert(to_check.is_matched());
+  assert(to_check.is_matched() && report.region_volumes.size() == to_check.plc.regions.size());
   const Plc& plc = to_check.plc;
   report.of_input = input_sizes(to_check);
   const std::vector<Shell> shells = shells_of(plc);

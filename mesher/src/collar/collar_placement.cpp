@@ -212,6 +212,7 @@ void CollarPlacement::add_on_curve(Index curve, std::span<const PlaceOnCurve> ve
   if (!closed) {
     ends = {system_.vertex_ball_[plc_.curves[curve].ends[0]],
             system_.vertex_ball_[plc_.curves[curve].ends[1]]};
+    assert(ends[0] != none && ends[1] != none);
     from = system_.balls_[ends[0]].radius;
     to = length - system_.balls_[ends[1]].radius;
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cassert>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -16,6 +17,7 @@ class DisjointSets {
   }
 
   Index find(Index i) {
+    assert(i < parents_.size());
     while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];
     return i;
   }

@@ -31,12 +31,25 @@ class Hierarchy {
   const Bounds& bounds(Index node) const { return nodes_[node].bounds; }
   Bounds& bounds(Index node) { return nodes_[node].bounds; }
   bool is_leaf(Index node) const { return nodes_[node].count != 0; }
-  Index left(Index node) const { return node + 1; }
-  Index right(Index node) const { return nodes_[node].first; }
+  /// Return the children of a node that is no leaf.
+  Index left(Index node) const {
+    assert(!is_leaf(node));
+    return node + 1;
+  }
+  Index right(Index node) const {
+    assert(!is_leaf(node));
+    return nodes_[node].first;
+  }
   /// Returns the first item of a leaf.
-  Index first(Index leaf) const { return nodes_[leaf].first; }
+  Index first(Index leaf) const {
+    assert(is_leaf(leaf));
+    return nodes_[leaf].first;
+  }
   /// Returns the end of the items of a leaf.
-  Index end(Index leaf) const { return nodes_[leaf].first + nodes_[leaf].count; }
+  Index end(Index leaf) const {
+    assert(is_leaf(leaf));
+    return nodes_[leaf].first + nodes_[leaf].count;
+  }
 
   /// Adds a tree over the items from `first` on, at least one, whose root is the next node. Leaves have at
   /// most `leaf_size` items. `split(first, count)` returns how many of these items go to the left child; it
@@ -45,6 +58,7 @@ class Hierarchy {
   template <class Split, class Leaf, class Join>
   auto add(Index first, Index count, Index leaf_size, const Split& split, const Leaf& leaf, const Join& join)
       -> std::invoke_result_t<const Leaf&, Index, Index> {
+    assert(count > 0);
     const Index node = node_count();
     nodes_.push_back({{}, first, count});
     if (count <= leaf_size) {

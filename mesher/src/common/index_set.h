@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -19,6 +20,7 @@ class IndexSet {
 
   /// Adds a number; returns false if it is there already.
   bool insert(Index i) {
+    assert(i != none);
     if (2 * (size_ + 1) > table_.size()) grow();
     Index& slot = slot_of(table_, i);
     if (slot == i) return false;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <optional>
 #include <unordered_map>
@@ -146,6 +147,9 @@ void complete_layers(TetMesh& mesh) {
 }  // namespace
 
 void complete_mesh(const std::string& path, TetMesh& mesh) {
+  assert(std::ranges::all_of(all_cell_kinds, [&](CellKind kind) {
+    return tags_of(mesh, kind).empty() || tags_of(mesh, kind).size() == count_of(mesh, kind);
+  }));
   complete_mid_nodes(path, mesh);
   for (const CellKind kind : volume_kinds) orient(mesh, kind);
   for (const CellKind kind : all_cell_kinds) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <deque>
 #include <functional>
 #include <limits>
@@ -399,6 +400,11 @@ std::vector<VtkArray> take_boundary(const TetMesh& mesh, VtkGrid& grid) {
 }
 
 void add_vtk_piece(const VtkPiece& piece, TetMesh& mesh) {
+  assert(piece.ends.size() == piece.types.size());
+  assert(std::ranges::all_of(piece.point_data,
+                             [&](const auto& array) { return array.second.size() == piece.points.size(); }));
+  assert(std::ranges::all_of(piece.cell_data,
+                             [&](const auto& array) { return array.second.size() == piece.types.size(); }));
   const std::size_t first_point = mesh.points.size();
   if (first_point + piece.points.size() >= none)
     throw VtkPieceError{"Points", "more points than can be numbered"};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cassert>
 #include <vector>
 
 #include "collarmesh/geometry.h"
@@ -81,6 +82,8 @@ class LocationObjects {
 
   void detach(Index object) {
     const Object& o = objects_[object];
+    assert((o.previous == none ? first_[o.vertex] : objects_[o.previous].next) == object);
+    assert(o.next == none || objects_[o.next].previous == object);
     if (o.previous != none)
       objects_[o.previous].next = o.next;
     else

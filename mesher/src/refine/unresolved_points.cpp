@@ -23,7 +23,7 @@ Index UnresolvedPoints::add(Unresolved point, Index near) {
 }
 
 void UnresolvedPoints::withdraw(Index point) {
-  assert(!resolved(point));
+  assert(!resolved(point) && points_[point].object != none);
   objects_.remove(points_[point].object);
   points_[point].object = none;
 }
@@ -53,6 +53,7 @@ bool UnresolvedPoints::is_due(Index point, std::uint32_t stamp) {
 }
 
 void UnresolvedPoints::resolve(Index point, Index vertex) {
+  assert(!resolved(point) && points_[point].object != none);
   objects_.remove(points_[point].object);
   points_[point].object = none;
   points_[point].vertex = vertex;

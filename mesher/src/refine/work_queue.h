@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <utility>
@@ -51,6 +52,7 @@ class WorkQueue {
   }
   /// Puts an entry into a bucket; bucket 0 has the largest balls.
   void put(Priority priority, unsigned bucket, Entry entry) {
+    assert(priority < priority_count && bucket < bucket_count);
     buckets_[priority][bucket].push_back(entry);
     first_[priority] = std::min(first_[priority], bucket);
     ++pushed_;

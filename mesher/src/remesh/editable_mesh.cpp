@@ -1,6 +1,7 @@
 #include "remesh/editable_mesh.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "delaunay/predicates.h"
 
@@ -43,6 +44,7 @@ const std::vector<Index>& EditableMesh::apply(Change change) {
   auto& [old, created, old_faces, created_faces] = change.replacement;
   surfaces.take_samples(old_faces);
   if (change.kind == Change::Kind::move) {
+    assert(complex.in_use(change.vertex));
     complex.star(change.vertex, changed_);
     complex.move_vertex(change.vertex, change.place);
     if (complex.mesh().features[change.vertex].dimension == 1) curves.moved(change.vertex, change.way);

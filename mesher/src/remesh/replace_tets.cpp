@@ -151,6 +151,7 @@ class Replacing {
 
 std::size_t replace_tets(EditableMesh& edited, std::span<const UnwantedTet> unwanted, const ShapeRule& rule,
                          double least_quality) {
+  assert(std::ranges::all_of(unwanted, [&](const UnwantedTet& u) { return edited.complex[u.tet].alive; }));
   std::vector<std::array<Index, 4>> corners;
   for (const UnwantedTet& u : unwanted) corners.push_back(sorted(edited.complex[u.tet].corners));
   const UnwantedRule without(rule, {corners.begin(), corners.end()});

@@ -31,11 +31,13 @@ class UndoLog {
     if (on_ && i < size_) entries_.emplace_back(i, values_[i]);
   }
   void set(std::size_t i, const Value& value) {
+    assert(i < values_.size());
     note(i);
     values_[i] = value;
   }
   /// Removes the last entry and returns it.
   Value pop() {
+    assert(!values_.empty());
     const Value last = values_.back();
     note(values_.size() - 1);
     values_.pop_back();

@@ -12,7 +12,7 @@ namespace {
 
 void erase_one(std::vector<Index>& all, Index one) {
   const auto found = std::find(all.begin(), all.end(), one);
-  if (found == all.end()) return;
+  assert(found != all.end());
   *found = all.back();
   all.pop_back();
 }
@@ -75,6 +75,7 @@ void SurfaceComplex::move_vertex(Index vertex, const Point& to) {
 
 Index SurfaceComplex::add_edge(const std::array<Index, 2>& ends, Index curve,
                                const std::array<double, 2>& at) {
+  assert(ends[0] < vertices.size() && ends[1] < vertices.size());
   const auto number = static_cast<Index>(edges.size());
   edges.push_back({ends, curve, at});
   for (const Index v : ends) vertices[v].edges.push_back(number);

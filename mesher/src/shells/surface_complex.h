@@ -39,8 +39,15 @@ class SurfaceComplex {
                                  ///< equally long
 
     bool alive() const { return ends[0] != none; }
-    Index other(Index v) const { return ends[0] == v ? ends[1] : ends[0]; }
-    double at_end(Index v) const { return at[ends[0] == v ? 0 : 1]; }
+    /// Return the other end, and the arc length of an end. Precondition: v is an end.
+    Index other(Index v) const {
+      assert(v == ends[0] || v == ends[1]);
+      return ends[0] == v ? ends[1] : ends[0];
+    }
+    double at_end(Index v) const {
+      assert(v == ends[0] || v == ends[1]);
+      return at[ends[0] == v ? 0 : 1];
+    }
   };
   struct Vertex {
     Point point;

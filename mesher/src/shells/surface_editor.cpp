@@ -1,6 +1,7 @@
 #include "shells/surface_editor.h"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 #include "common/sort_uniquely.h"
@@ -14,6 +15,14 @@ namespace {
 // Least cosine of the angle between a new triangle and its patch; and the least one at a new vertex, whose
 // triangles may be flipped afterwards.
 constexpr double least_agreement = 0.6, least_agreement_at_first = 0.2;
+
+/// Returns whether the lists of triangles and edges at the corners of new triangles are consistent.
+[[maybe_unused]] bool lists_are_consistent(const SurfaceComplex& complex,
+                                           std::span<const SurfaceEditor::Created> created) {
+  return std::ranges::all_of(created, [&](const SurfaceEditor::Created& n) {
+    return std::ranges::all_of(n.corners, [&](Index v) { return complex.consistent(v); });
+  });
+}
 
 }  // namespace
 
@@ -132,6 +141,7 @@ bool SurfaceEditor::flip(Index a, Index b) {
   if (!fit(created, two, c)) return false;
   for (const Index old : two) complex_.remove_triangle(old);
   for (const Created& n : created) complex_.add_triangle(n.corners, n.patch);
+  assert(lists_are_consistent(complex_, created));
   return true;
 }
 
@@ -225,6 +235,8 @@ void SurfaceEditor::replace_vertex(Index vertex, std::span<const Created> create
   for (const Index t : std::vector<Index>(complex_.vertices[vertex].triangles)) complex_.remove_triangle(t);
   if (complex_.vertices[vertex].feature.dimension == 1) merge_edges(vertex);
   for (const Created& n : created) complex_.add_triangle(n.corners, n.patch);
+  assert(complex_.vertices[vertex].triangles.empty() && complex_.vertices[vertex].edges.empty());
+  assert(lists_are_consistent(complex_, created));
 }
 
 bool SurfaceEditor::collapse(Index from, Index to, const CollapseRule& rule) {
@@ -293,6 +305,7 @@ Index SurfaceEditor::divide_at(Index a, Index b, std::span<const Index> triangle
     }
   for (const Index t : triangles) complex_.remove_triangle(t);
   for (const Created& n : created) complex_.add_triangle(n.corners, n.patch);
+  assert(lists_are_consistent(complex_, created));
   return v;
 }
 
@@ -330,6 +343,8 @@ Index SurfaceEditor::divide_curve_edge(Index edge, double at) {
     complex_.edges[e].tip = complex_.edges[e].other(v) == old.tip ? old.tip : none;
   }
   for (const Created& n : created) complex_.add_triangle(n.corners, n.patch);
+  assert(complex_.consistent(a) && complex_.consistent(b) && complex_.consistent(v));
+  assert(lists_are_consistent(complex_, created));
   return v;
 }
 
@@ -356,6 +371,7 @@ Index SurfaceEditor::insert(Index triangle, const Point& p) {
   }
   complex_.remove_triangle(triangle);
   for (const Created& n : created) complex_.add_triangle(n.corners, n.patch);
+  assert(lists_are_consistent(complex_, created));
   return v;
 }
 
@@ -439,6 +455,7 @@ bool SurfaceEditor::slide(Index vertex, double at, double least) {
   if (!put(vertex, paths_.point(curve, at), least)) return false;
   before.at[1] = at;
   behind.at[0] = at + shift;
+  assert(before.at[0] < before.at[1] && behind.at[0] <= behind.at[1]);
   return true;
 }
 

@@ -192,6 +192,9 @@ void SurfaceEditor::restore(const Surroundings& before) {
   }
   for (const auto& t : before.triangles) complex_.add_triangle(t.corners, t.patch);
   for (const auto& [v, changes] : before.changes) complex_.vertices[v].changes = changes;
+  assert(complex_.consistent(before.vertex));
+  assert(
+      std::ranges::all_of(before.neighbours, [&](const auto& n) { return complex_.consistent(n.vertex); }));
 }
 
 }  // namespace collarmesh::shells
