@@ -3,18 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <deque>
 #include <filesystem>
 #include <optional>
-#include <string_view>
 
-#include "check/guarantees.h"
-#include "check/layer_cells.h"
 #include "collarmesh/error.h"
 #include "collarmesh/io/interfaces_io.h"
 #include "collarmesh/partition.h"
 #include "command/make_mesh.h"
+#include "command/usable.h"
 #include "common/thread_limit.h"
 #include "files/cell_decomposition.h"
 #include "files/file_groups.h"
@@ -120,22 +117,15 @@ void tell_of(const process::Console& console, const MeshArguments& arguments, co
 /// the trace before.
 void require_usable(process::Process& process, const MeshArguments& arguments, Stages& stages,
                     const report::MeshRun& run) {
-  constexpr std::array<std::string_view, 7> unusable{guarantee::valid_arrays,  guarantee::finite_points,
-                                                     guarantee::layer_arrays,  guarantee::positive_volume,
-                                                     guarantee::distinct_tets, guarantee::positive_jacobian,
-                                                     guarantee::layer_jacobian};
-  const auto found = std::ranges::find_if(run.check.findings, [&](const Finding& finding) {
-    return std::ranges::find(unusable, finding.guarantee) != unusable.end();
-  });
-  if (found == run.check.findings.end()) return;
-  constexpr std::size_t most = 10;
-  const std::string wrong =
-      report::findings_text(run.check, arguments.verbose ? run.check.findings.size() : most);
-  stages.print(arguments.quiet ? each_line_of(arguments.output, wrong) : wrong);
-  if (const auto trace = staged_trace(process, arguments, run.trace)) process.files.commit({trace.get()});
-  throw process::Stopped(
-      ExitCode::guarantee_missed,
-      fmt::format("{} Nothing was written; --keep-invalid writes the mesh all the same", found->message));
+  const auto tell = [&] {
+    constexpr std::size_t most = 10;
+    const std::string wrong =
+        report::findings_text(run.check, arguments.verbose ? run.check.findings.size() : most);
+    stages.print(arguments.quiet ? each_line_of(arguments.output, wrong) : wrong);
+    if (const auto trace = staged_trace(process, arguments, run.trace)) process.files.commit({trace.get()});
+  };
+  for (const Finding& finding : run.check.findings)
+    command::require_usable(finding.guarantee, finding.message, tell);
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cstdint>
 
 #include "collarmesh/io/tet_mesh_io.h"
 #include "common/lower_case.h"
@@ -28,16 +27,6 @@ CLI::Validator number_in(double low, double high, const std::string& name) {
         double number = 0;
         if (read_whole(text, number) && number >= low && number <= high) return std::string();
         return fmt::format("'{}' is not {}", text, name);
-      },
-      "");
-}
-
-CLI::Validator whole_number() {
-  return CLI::Validator(
-      [](std::string& text) {
-        std::uint64_t number = 0;
-        return read_whole(text, number) ? std::string()
-                                        : fmt::format("'{}' is not a whole number >= 0", text);
       },
       "");
 }

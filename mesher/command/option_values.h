@@ -19,9 +19,6 @@ template <class... Values>
 /// Accepts a finite number in an interval, so that "nan" and "inf" are rejected as well.
 CLI::Validator number_in(double low, double high, const std::string& name);
 
-/// Accepts a whole number that is not negative; CLI11 alone would accept "-5".
-CLI::Validator whole_number();
-
 /// Accepts one of these extensions; "STL" becomes ".stl".
 CLI::Validator format_name(const std::vector<std::string>& extensions);
 

@@ -2,8 +2,8 @@
 
 namespace collarmesh::process {
 
-/// The program's exit codes. The mesh is written with codes 0 and 7 only. With 7 `collarmesh` does not write
-/// it if it has elements that no solver can use, unless --keep-invalid is given; `collarmesh-mpi` does.
+/// The exit codes. The mesh is written with codes 0 and 7 only; with 7 not if it has elements that no solver
+/// can use, unless --keep-invalid is given.
 enum class ExitCode {
   success = 0,
   internal_error = 1,

@@ -62,7 +62,8 @@ Json takers_of(const Option& option) {
   for (const auto& [command, name] :
        {std::pair(Option::mesh, "mesh"), std::pair(Option::check, "check"), std::pair(Option::info, "info"),
         std::pair(Option::convert, "convert"), std::pair(Option::repair, "repair"),
-        std::pair(Option::remesh, "remesh"), std::pair(Option::programs, "programs")})
+        std::pair(Option::remesh, "remesh"), std::pair(Option::programs, "programs"),
+        std::pair(Option::ranks, "ranks")})
     if (option.is_for(command)) takers.push_back(name);
   return takers;
 }

@@ -277,6 +277,18 @@ class Failures(DistributedTest):
         self.assert_fails(self.mpirun(2, PROGRAM, MODELS / "bracket.off", "-o",
                           "out.h5", "--size", "1", "--time-limit", "1"), 5, "time limit")
 
+    def test_flat_tets(self):
+        """Levels cut a box that is as thick as two steps of its coordinates until they cannot tell nodes apart."""
+        far, step = 2.0**30, 2.0**-22
+        corners = [[far + step * size * (i >> axis & 1) for axis, size in enumerate((8192, 8192, 2))] for i in range(8)]
+        facets = (0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)
+        (self.folder / "thin.off").write_text("OFF\n8 6 0\n" + "".join(f"{x!r} {y!r} {z!r}\n" for x, y, z in corners)
+                                              + "".join(f"4 {a} {b} {c} {d}\n" for a, b, c, d in facets))
+        command = [PROGRAM, "thin.off", "-o", "out.h5", "--size", "1", "--levels", "2", "-q"]
+        self.assert_fails(self.mpirun(2, *command), 7, "is flat", "Nothing was written")
+        self.assertEqual(self.mpirun(2, *command, "--keep-invalid").returncode, 7)
+        self.assertLessEqual(Mesh(self.folder / "out.h5").volumes().min(), 0)
+
     def test_other_options_on_a_rank(self):
         run = self.mpirun(1, PROGRAM, MODELS / "box.off", "-o", "out.h5", ":", "-n", "1", PROGRAM, MODELS / "box.off",
                           "-o", "out.h5", "--levels", "2")

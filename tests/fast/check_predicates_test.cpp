@@ -75,5 +75,27 @@ TEST_F(CheckPredicates, ANodeLiesOnItsFeature) {
   EXPECT_NE(message().find("its curve 2 (tag 9)"), std::string::npos);
 }
 
+TEST_F(CheckPredicates, TheEdgesOfACurveAreOneChain) {
+  const NamedFeature curve{"curve", 2, 9};
+  EXPECT_TRUE(check_edges_at(curve, {1, 2, 3}, 2, 2, findings_));
+  EXPECT_FALSE(check_edges_at(curve, {1, 2, 3}, 3, 2, findings_));
+  ASSERT_EQ(report_.findings.size(), 1U);
+  EXPECT_EQ(report_.findings[0].guarantee, guarantee::curve_cover);
+  EXPECT_NE(message().find("curve 2 (tag 9) has 3 edges, not 2"), std::string::npos) << message();
+}
+
+TEST_F(CheckPredicates, MeasuresAreThoseOfTheComplex) {
+  const NamedFeature part{"region", none, 4};
+  check_measure(volume_of_region, part, {}, 1, 1.5, 0.5, findings_);
+  EXPECT_EQ(report_.findings_total, 0U);
+  check_measure(volume_of_region, part, {}, 1, 1.5, 0.4, findings_);
+  check_measure(area_of_patch, {"patch", 3, 5}, {}, NAN, 1, 1, findings_);
+  ASSERT_EQ(report_.findings.size(), 2U);
+  EXPECT_EQ(report_.findings[0].guarantee, guarantee::region_volume);
+  EXPECT_EQ(report_.findings[1].guarantee, guarantee::patch_area);
+  EXPECT_NE(message().find("The volume of the region with tag 4 is 1 in the mesh"), std::string::npos)
+      << message();
+}
+
 }  // namespace
 }  // namespace collarmesh::checks::check_predicates_test

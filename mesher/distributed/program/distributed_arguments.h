@@ -8,19 +8,12 @@
 
 namespace collarmesh::distributed {
 
-struct DistributedArguments {
-  command::MeshArguments mesh;  ///< options of the coarse mesh, with the files; the order is that of the
-                                ///< finest mesh
-  unsigned levels = 1;
-  double slack = 10;  ///< degrees by which angles may be worse than those of the coarse mesh
-};
-
-/// Parses a command line. If there is nothing to run (help, version, a mistake), prints the text and returns
-/// the exit code instead.
-std::variant<DistributedArguments, process::ExitCode> parse(const process::Console& console, int argc,
-                                                            const char* const* argv);
+/// Parses a command line. The options are those of the coarse mesh; the order is that of the finest mesh. If
+/// there is nothing to run (help, version, a mistake), prints the text and returns the exit code instead.
+std::variant<command::MeshArguments, process::ExitCode> parse(const process::Console& console, int argc,
+                                                              const char* const* argv);
 
 /// Returns whether to write a .pvtu with pieces; otherwise an .h5 is written.
-bool writes_pieces(const DistributedArguments& arguments);
+bool writes_pieces(const command::MeshArguments& arguments);
 
 }  // namespace collarmesh::distributed

@@ -21,6 +21,7 @@
 #include "collarmesh/distributed.h"
 #include "command/guarded.h"
 #include "command/make_mesh.h"
+#include "command/usable.h"
 #include "common/stopwatch.h"
 #include "distributed_arguments.h"
 #include "files/complex_input.h"
@@ -130,9 +131,9 @@ void require_equal_command_lines(int argc, const char* const* argv) {
                                   host_of(other)));
 }
 
-void require_equal_files(const DistributedArguments& arguments) {
-  std::vector<std::string> paths = arguments.mesh.inputs;
-  for (const std::string& path : {arguments.mesh.names, arguments.mesh.size_field_file})
+void require_equal_files(const command::MeshArguments& arguments) {
+  std::vector<std::string> paths = arguments.inputs;
+  for (const std::string& path : {arguments.names, arguments.size_field_file})
     if (!path.empty() && !path.starts_with('{')) paths.push_back(path);
   for (const std::string& path : paths) {
     Hash hash;
@@ -204,10 +205,10 @@ void share(RepairOptions& repair, bool is_first) {
 }
 
 /// Makes the mesh on rank 0, and its complex on the other ranks.
-Coarse make_coarse(process::Process& process, const DistributedArguments& arguments) {
+Coarse make_coarse(process::Process& process, const command::MeshArguments& arguments) {
   const Ranks ranks(MPI_COMM_WORLD);
   Coarse coarse;
-  command::MeshArguments first_order = arguments.mesh;
+  command::MeshArguments first_order = arguments;
   first_order.order = 1;
   coarse.options = first_order;
   together([&] {
@@ -333,7 +334,7 @@ double peak_bytes() {
 
 /// Writes files under temporary names into a folder of rank 0. Rank 0 moves them to their places when all
 /// ranks are done.
-void write_files(process::Process& process, const DistributedArguments& arguments, const ParallelMesh& mesh,
+void write_files(process::Process& process, const command::MeshArguments& arguments, const ParallelMesh& mesh,
                  Report& report) {
   const bool first = Ranks(MPI_COMM_WORLD).rank == 0;
   const Stopwatch stopwatch;
@@ -341,7 +342,7 @@ void write_files(process::Process& process, const DistributedArguments& argument
   std::string place;
   together([&] {
     if (!first) return;
-    staged.emplace(process.files, arguments.mesh.output);
+    staged.emplace(process.files, arguments.output);
     staged->write([&](const std::string& path) { place = path; });
   });
   place = broadcast(MPI_COMM_WORLD, place);
@@ -350,19 +351,18 @@ void write_files(process::Process& process, const DistributedArguments& argument
   } catch (const PetscOutOfMemory& failure) {
     end_without_memory(process, failure);
   } catch (const PetscFailure& failure) {
-    end_all(
-        process, process::ExitCode::cannot_write,
-        fmt::format("{}: cannot be written ({}); is the disk full?", arguments.mesh.output, failure.what()));
+    end_all(process, process::ExitCode::cannot_write,
+            fmt::format("{}: cannot be written ({}); is the disk full?", arguments.output, failure.what()));
   } catch (const WriteError& error) {  // all ranks throw it; the message has the temporary name
-    const std::filesystem::path target = arguments.mesh.output, staged_at = place;
+    const std::filesystem::path target = arguments.output, staged_at = place;
     throw WriteError(process::with_folder(error.what(), staged_at.parent_path(), target.parent_path()));
   }
   report.write_seconds = stopwatch.seconds();
   report.peak_bytes = gathered(MPI_COMM_WORLD, std::vector{peak_bytes()});
   together([&] {
     if (!first) return;
-    if (!arguments.mesh.reports.empty()) {
-      staged_report.emplace(process.files, arguments.mesh.reports.front());
+    if (!arguments.reports.empty()) {
+      staged_report.emplace(process.files, arguments.reports.front());
       staged_report->write([&](const std::string& path) {
         process::write_text(path, report::json_text(report.json(), 1) + "\n");
       });
@@ -371,30 +371,35 @@ void write_files(process::Process& process, const DistributedArguments& argument
   });
 }
 
-void require_places(process::Process& process, const DistributedArguments& arguments) {
-  process.files.require_writable(arguments.mesh.output, files::files_written(arguments.mesh.output));
-  for (const std::string& report : arguments.mesh.reports) process.files.require_writable(report);
+void require_places(process::Process& process, const command::MeshArguments& arguments) {
+  process.files.require_writable(arguments.output, files::files_written(arguments.output));
+  for (const std::string& report : arguments.reports) process.files.require_writable(report);
 }
 
-process::ExitCode mesh_distributed(process::Process& process, const DistributedArguments& arguments) {
+process::ExitCode mesh_distributed(process::Process& process, const command::MeshArguments& arguments) {
   const Ranks ranks(MPI_COMM_WORLD);
-  process.interrupts.set_time_limit(arguments.mesh.mesh.time_limit);
-  process::limit_memory(arguments.mesh.mesh.max_memory);
+  process.interrupts.set_time_limit(arguments.mesh.time_limit);
+  process::limit_memory(arguments.mesh.max_memory);
   together([&] {
     if (ranks.rank == 0) require_places(process, arguments);
   });
   require_equal_files(arguments);
   Coarse coarse = make_coarse(process, arguments);
   const auto stop = [&] { together([&] { process.interrupts.stop_if_asked(); }); };
-  if (!arguments.mesh.quiet && ranks.rank == 0)
+  if (!arguments.quiet && ranks.rank == 0)
     process.console.tell(
         "coarse mesh: {} tets; {}\n", coarse.made.run.result.mesh.tets.size(),
         coarse.made.run.guarantees_hold() ? "every guarantee holds" : coarse.made.run.missed());
+  const auto require_usable = [&](const auto& findings) {
+    for (const auto& finding : findings)
+      if (!arguments.keep_invalid) command::require_usable(finding.guarantee, finding.message);
+  };
+  together([&] { require_usable(coarse.made.run.check.findings); });
   int holds = coarse.made.run.guarantees_hold() ? 1 : 0;
   MPI_Bcast(&holds, 1, MPI_INT, 0, MPI_COMM_WORLD);
   const Shape shape = coarse.shape();
   ParallelMesh mesh(MPI_COMM_WORLD, coarse.made.run.result.mesh, coarse.made.run.plc,
-                    arguments.mesh.mesh.bounds.collar_angle);
+                    arguments.mesh.bounds.collar_angle);
   coarse.made.run.result.mesh = {};
   Report report;
   report.coarse = mesh.coarse_angles();
@@ -402,11 +407,11 @@ process::ExitCode mesh_distributed(process::Process& process, const DistributedA
   for (unsigned level = 0; level < arguments.levels; ++level) {
     stop();
     report.levels.push_back(mesh.refine(shape));
-    if (!arguments.mesh.quiet) process.console.tell("{}", text_of(report.levels.back(), level + 1));
+    if (!arguments.quiet) process.console.tell("{}", text_of(report.levels.back(), level + 1));
   }
   stop();
-  if (arguments.mesh.order == 2) report.order = mesh.raise_order(shape);
-  if (report.order && !arguments.mesh.quiet)
+  if (arguments.order == 2) report.order = mesh.raise_order(shape);
+  if (report.order && !arguments.quiet)
     process.console.tell(
         "second order: {} nodes, {} of them not at the middles of their edges; {} straightened, off their "
         "places by at most {:.3g}\n",
@@ -415,12 +420,13 @@ process::ExitCode mesh_distributed(process::Process& process, const DistributedA
   const Stopwatch stopwatch;
   report.certificate = mesh.certify(shape, arguments.slack);
   report.certify_seconds = stopwatch.seconds();
-  mesh.scale(arguments.mesh.scale);
-  stop();
-  write_files(process, arguments, mesh, report);
   for (const Finding& finding : report.certificate.findings)
     process.console.tell("{}: {}\n", finding.guarantee, finding.message);
-  if (!arguments.mesh.quiet) process.console.tell("{}", text_of(report.certificate, report.coarse));
+  require_usable(report.certificate.findings);
+  mesh.scale(arguments.scale);
+  stop();
+  write_files(process, arguments, mesh, report);
+  if (!arguments.quiet) process.console.tell("{}", text_of(report.certificate, report.coarse));
   return report.certificate.passed() && holds != 0 ? process::ExitCode::success
                                                    : process::ExitCode::guarantee_missed;
 }
@@ -443,10 +449,10 @@ process::ExitCode run(process::Process& process, int argc, char** argv) {
     return command::guarded(process, [&]() -> process::ExitCode {
       try {
         require_equal_command_lines(argc, argv);
-        const std::variant<DistributedArguments, process::ExitCode> parsed =
+        const std::variant<command::MeshArguments, process::ExitCode> parsed =
             parse(process.console, argc, argv);
         if (const process::ExitCode* code = std::get_if<process::ExitCode>(&parsed)) return *code;
-        return mesh_distributed(process, std::get<DistributedArguments>(parsed));
+        return mesh_distributed(process, std::get<command::MeshArguments>(parsed));
       } catch (const PetscOutOfMemory& failure) {
         end_without_memory(process, failure);
       } catch (const PetscFailure& failure) {

@@ -12,13 +12,12 @@
 
 #include "calls.h"
 #include "check/feature_sizes.h"
-#include "check/mesh_to_check.h"
+#include "check/nodes_on_feature.h"
 #include "check/predicates.h"
 #include "collarmesh/distributed.h"
 #include "common/sorted.h"
 #include "common/split_mix.h"
 #include "local_mesh.h"
-#include "location/feature_shapes.h"
 #include "shared_points.h"
 
 namespace collarmesh::distributed {
@@ -26,6 +25,8 @@ namespace collarmesh::distributed {
 namespace {
 
 using checks::At;
+
+constexpr checks::Measure length_of_curve{"curve_length", "length", "Edges are missing or doubled."};
 
 /// A hash that does not depend on the order of cells: two sums of numbers made from the cells.
 class Fingerprint {
@@ -193,13 +194,13 @@ class Certification {
       const Corners p = mesh_->corners(t);
       const Point centre = 0.25 * (p[0] + p[1] + p[2] + p[3]);
       const Tag tag = mesh_->tet_tag[t];
+      const TetQuality quality = measure_tet(*mesh_, t);
+      if (!checks::check_orientation({"Tet"}, p, quality.volume, findings_)) continue;
       if (!expected_->volumes.contains(tag)) {
         find(guarantee::region_tag, centre,
              "A tet at {} is labelled with region {}, which the complex does not have.", At{centre}, tag);
         continue;
       }
-      const TetQuality quality = measure_tet(*mesh_, t);
-      if (!checks::check_orientation({"Tet"}, p, quality.volume, findings_)) continue;
       if (order_ == 2) checks::check_jacobian({"Tet"}, curved_tet(*mesh_, t), tag, findings_);
       certificate_.region_volumes[tag] += quality.volume;
       check_angles(quality, mesh_->tet_collar[t] != 0, centre);
@@ -318,33 +319,19 @@ class Certification {
   }
 
   void check_points() {
-    FeatureShapes nearest(plc_);
+    std::map<PetscInt, checks::NodesOnFeature> features;  // by code in the label
     for (std::size_t i = 0; i < mesh_->points.size(); ++i) {
       if (!owns(i)) continue;
       const Point& p = mesh_->points[i];
       const TetMesh::VertexFeature& feature = mesh_->features[i];
       if (i < mesh_->vertices) ++certificate_.vertices;
       if (is_corner(feature)) corners_.push_back(p);
-      if (feature.dimension == 1 || feature.dimension == 2)
-        check_distance(i < mesh_->vertices ? "The vertex" : "The mid-edge node", p, feature, nearest);
+      if (feature.dimension != 1 && feature.dimension != 2) continue;
+      features.try_emplace(encoded(feature), expected_->to_check, feature)
+          .first->second.check(feature.dimension == 1 ? guarantee::curve_distance : guarantee::patch_distance,
+                               {i < mesh_->vertices ? "The vertex" : "The mid-edge node"}, p,
+                               certificate_.largest_distance, findings_);
     }
-  }
-
-  void check_distance(std::string_view what, const Point& p, const TetMesh::VertexFeature& feature,
-                      FeatureShapes& nearest) {
-    const checks::MeshToCheck& to_check = expected_->to_check;
-    const Index i = feature.feature;
-    const bool on_curve = feature.dimension == 1;
-    const bool flat = on_curve ? plc_.curves[i].straight : plc_.patches[i].planar;
-    const double off = flat && !on_curve ? std::fabs(dot(p - plc_.patches[i].origin, plc_.patches[i].normal))
-                                         : distance(nearest.nearest(feature, p), p);
-    if (!flat) certificate_.largest_distance = std::max(certificate_.largest_distance, off);
-    if (on_curve)
-      checks::check_off_feature(guarantee::curve_distance, {what}, p, off, to_check.curve_allowance[i],
-                                {"curve", i, plc_.curves[i].tag}, findings_);
-    else
-      checks::check_off_feature(guarantee::patch_distance, {what}, p, off, to_check.patch_allowance[i],
-                                {"patch", i, plc_.patches[i].tag}, findings_);
   }
 
   /// Checks that every vertex inside a curve has two edges on it.
@@ -358,10 +345,9 @@ class Certification {
     }
     vertices_.combine(edges_of, MPI_SUM);
     for (std::size_t v = 0; v < edges_of.size(); ++v)
-      if (vertices_.owned(v) && mesh_->features[v].dimension == 1 && edges_of[v] != 2)
-        find(guarantee::curve_cover, mesh_->points[v],
-             "A vertex at {} on curve {} has {} edges on it, not 2.", At{mesh_->points[v]},
-             mesh_->features[v].feature, edges_of[v]);
+      if (const auto [dimension, curve] = mesh_->features[v]; vertices_.owned(v) && dimension == 1)
+        checks::check_edges_at({"curve", curve, plc_.curves[curve].tag}, mesh_->points[v], edges_of[v], 2,
+                               findings_);
   }
 
   void sum(std::vector<double>& values) const {
@@ -401,24 +387,20 @@ class Certification {
     checks::MeshToCheck& to_check = expected_->to_check;
     to_check.match.vertex_point = checks::match_vertices(found, plc_, to_check.rounding);
     checks::check_vertices_present(to_check, findings_);
-    const auto compare = [&](std::string_view guarantee, std::string_view what, Tag tag, double measured,
-                             double wanted, double room) {
-      if (!(std::fabs(measured - wanted) <= room))
-        find(guarantee, plc_.bounds.centre(),
-             "The {} with tag {} measures {:.15g}, but {:.15g} in the complex; the allowed difference is "
-             "{:.6g}.",
-             what, tag, measured, wanted, room);
+    const auto compare = [&](const checks::Measure& measure, const checks::NamedFeature& feature,
+                             double measured, double expected, double allowed) {
+      checks::check_measure(measure, feature, plc_.bounds.centre(), measured, expected, allowed, findings_);
     };
     for (const auto& [tag, wanted] : expected_->volumes)
-      compare(guarantee::region_volume, "region", tag, certificate_.region_volumes[tag], wanted,
+      compare(checks::volume_of_region, {"region", none, tag}, certificate_.region_volumes[tag], wanted,
               expected_->volume_room[tag]);
     for (Index p = 0; p < areas_.size(); ++p)
       if (!checks::patch_is_outside(to_check, p))
-        compare(guarantee::patch_area, "patch", plc_.patches[p].tag, areas_[p], expected_->sizes.areas[p],
-                expected_->area_room[p]);
+        compare(checks::area_of_patch, {"patch", p, plc_.patches[p].tag}, areas_[p],
+                expected_->sizes.areas[p], expected_->area_room[p]);
     for (Index k = 0; k < lengths_.size(); ++k)
       if (!checks::curve_is_outside(to_check, k))
-        compare("curve_length", "curve", plc_.curves[k].tag, lengths_[k], expected_->sizes.lengths[k],
+        compare(length_of_curve, {"curve", k, plc_.curves[k].tag}, lengths_[k], expected_->sizes.lengths[k],
                 expected_->length_room[k]);
   }
 

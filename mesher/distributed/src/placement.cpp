@@ -14,6 +14,7 @@
 #include "common/sort_uniquely.h"
 #include "delaunay/predicates.h"
 #include "local_mesh.h"
+#include "project/rules.h"
 #include "second_order/places_on_features.h"
 #include "shared_points.h"
 
@@ -21,10 +22,10 @@ namespace collarmesh::distributed {
 
 namespace {
 
-// A move longer than this many times the shortest edge at the vertex would pass through other tets.
-constexpr double longest_way = 2;
-// Least cosine between an edge of a curve and its initial direction.
-constexpr double least_course = 0.5;
+using projection::least_gain;
+using projection::longest_way;
+using projection::retries;
+
 // Largest violation of the bounds on angles that is acceptable as a last resort, degrees.
 constexpr double tolerated = 10;
 // Least score of a tet that may stay: 1 is within the bounds, 0 violates them by `tolerated`.
@@ -41,13 +42,9 @@ constexpr std::size_t places = 2 + 6 * steps.size();  // places that a vertex tr
 // Each sweep uses other directions. A vertex that found no better place is tried this many times, unless
 // something around it changes.
 constexpr std::uint8_t tries = 4;
-// Least gain of a move.
-constexpr double least_gain = 1e-3;
 // A displacement off a plane or a straight curve counts as none if it is shorter than this, relative to the
 // shortest edge.
 constexpr double no_way = 1e-6;
-// Number of times that vertices that moved back are tried again.
-constexpr unsigned retries = 2;
 
 std::uint64_t mixed(std::uint64_t h) {  // the finalizer of MurmurHash3
   h ^= h >> 33U;
@@ -157,12 +154,7 @@ class Placement {
     return has_way_[v] ? shares[back_[v]] * distance(targets_[v], origins_[v]) : 0;
   }
 
-  bool is_flat(std::size_t v) const {
-    const auto& [dimension, feature] = mesh_->features[v];
-    if (feature == none) return false;
-    if (dimension == 1) return shape_.plc.curves[feature].straight;
-    return dimension == 2 && shape_.plc.patches[feature].planar;
-  }
+  bool is_flat(std::size_t v) const { return on_features_.is_flat(mesh_->features[v]); }
   /// Returns the place of a vertex after a displacement along its feature.
   Point displaced(Index v, const Vector& displacement) {
     const Point& p = mesh_->points[v];
@@ -191,12 +183,7 @@ class Placement {
   /// Returns 1 for a tet within the bounds on angles, 0 for one that violates them by `tolerated`.
   double score(Index tet, const Corners& p) const {
     const double six = six_volume(p[0], p[1], p[2], p[3]);
-    if (!(six > 0)) {
-      double longest = 0;
-      for (unsigned i = 0; i < 4; ++i)
-        for (unsigned j = i + 1; j < 4; ++j) longest = std::max(longest, squared_distance(p[i], p[j]));
-      return flat_score + (longest > 0 ? six / (longest * std::sqrt(longest)) : -1);
-    }
+    if (!(six > 0)) return flat_score + projection::score_of_inverted(p, six);
     const ExtremeAngles angles = extreme_angles(p);
     return 1 + std::min({0.0, angles.least - least(tet), most(tet) - angles.most}) / tolerated;
   }
@@ -217,8 +204,7 @@ class Placement {
 
   bool on_course(const std::array<Index, 2>& edge) const {
     const auto& [a, b] = edge;
-    const Vector then = origins_[b] - origins_[a], now = mesh_->points[b] - mesh_->points[a];
-    return dot(then, now) > least_course * norm(then) * norm(now);
+    return projection::on_course(origins_[b] - origins_[a], mesh_->points[b] - mesh_->points[a]);
   }
 
   /// Moves vertices, inside regions and along their features, to places where the tets around them have
@@ -384,20 +370,17 @@ class Placement {
   /// back, those that made room. Returns the tets around these vertices.
   std::vector<Index> draw_back(const std::vector<Index>& tets) {
     std::vector<PetscInt> marks(mesh_->points.size(), 0);
-    const auto mark_longest = [&](const auto& corners) {
-      double longest = 0;
-      for (const Index v : corners) longest = std::max(longest, way_of(v));
-      for (const Index v : corners)
-        if (longest > 0 && way_of(v) == longest) marks[v] = 1;
-      return longest > 0;
+    const auto mark = [&](const auto& corners) {
+      return mark_longest(
+          corners, [this](Index v) { return way_of(v); }, marks);
     };
     for (const Index t : tets) {
-      if (acceptable(t) || mark_longest(mesh_->tets[t])) continue;
+      if (acceptable(t) || mark(mesh_->tets[t])) continue;
       for (const Index v : mesh_->tets[t])
         if (!has_way_[v] && mesh_->points[v] != origins_[v]) marks[v] = 1;
     }
     for (const auto& edge : mesh_->edges)
-      if (!on_course(edge)) mark_longest(edge);
+      if (!on_course(edge)) mark(edge);
     vertices_.combine(marks, MPI_MAX);
     std::vector<Index> around;
     std::vector<PetscInt> touched(mesh_->points.size(), 0);

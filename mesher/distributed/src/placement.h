@@ -2,7 +2,9 @@
 
 #include <petscdmplex.h>
 
+#include <algorithm>
 #include <array>
+#include <vector>
 
 #include "collarmesh/distributed.h"
 
@@ -10,6 +12,17 @@ namespace collarmesh::distributed {
 
 /// The shares of their displacement that vertices and mid-edge nodes keep when they move back, step by step.
 inline constexpr std::array<double, 4> shares{1, 0.5, 0.25, 0};
+
+/// Marks those of some points whose displacement is the longest, so that they move back. Returns false if
+/// none has a displacement.
+template <class Points, class WayOf>
+bool mark_longest(const Points& points, const WayOf& way_of, std::vector<PetscInt>& marks) {
+  double longest = 0;
+  for (const auto point : points) longest = std::max(longest, way_of(point));
+  for (const auto point : points)
+    if (longest > 0 && way_of(point) == longest) marks[point] = 1;
+  return longest > 0;
+}
 
 /// Moves the vertices on features of a mesh of first order onto the shape, and makes room for them; see
 /// ParallelMesh::refine. All tets have positive volume before and after. Collective.

@@ -6,6 +6,7 @@
 #include "calls.h"
 #include "collarmesh/curved_tet.h"
 #include "collarmesh/distributed.h"
+#include "collarmesh/second_order.h"
 #include "local_mesh.h"
 #include "placement.h"
 #include "second_order/places_on_features.h"
@@ -14,12 +15,6 @@
 namespace collarmesh::distributed {
 
 namespace {
-
-// A node farther from the middle of its edge than this, relative to the edge, belongs to another part of its
-// feature. A half circle has the ratio 0.5.
-constexpr double farthest = 0.5;
-// The default of SecondOrderOptions::least_jacobian.
-constexpr double least_jacobian = 0.1;
 
 /// The placement of mid-edge nodes of a mesh on many ranks on smooth features, such that no tet is inverted.
 class DistributedCurving {
@@ -71,7 +66,12 @@ class DistributedCurving {
   void place(std::size_t edge) {
     mesh_.points[mesh_.vertices + edge] = mesh_.middle(edge) + shares[back_[edge]] * ways_[edge];
   }
-  std::size_t edge_of(Index node) const { return node - mesh_.vertices; }
+  std::array<std::size_t, 6> edges_of(Index tet) const {
+    std::array<std::size_t, 6> edges;
+    std::ranges::transform(mesh_.tet_mid_nodes[tet], edges.begin(),
+                           [this](Index node) { return node - mesh_.vertices; });
+    return edges;
+  }
 
   // Finds the displacements of the nodes that this rank owns.
   void find_ways() {
@@ -89,32 +89,26 @@ class DistributedCurving {
     for (std::size_t e = 0; e < ways_.size(); ++e) {
       const auto& [a, b] = mesh_.ends[e];
       if (!std::isfinite(squared_norm(ways_[e]))) ways_[e] = {};
-      if (norm(ways_[e]) > farthest * distance(mesh_.points[a], mesh_.points[b]))
+      if (!second_order::PlacesOnFeatures::belongs(norm(ways_[e]),
+                                                   distance(mesh_.points[a], mesh_.points[b])))
         back_[e] = shares.size() - 1;
       place(e);
     }
   }
 
   void find_curved_tets() {
-    for (Index t = 0; t < mesh_.tets.size(); ++t) {
-      const auto& nodes = mesh_.tet_mid_nodes[t];
-      if (std::any_of(nodes.begin(), nodes.end(),
-                      [&](Index node) { return squared_norm(ways_[edge_of(node)]) > 0; }))
+    for (Index t = 0; t < mesh_.tets.size(); ++t)
+      if (std::ranges::any_of(edges_of(t), [&](std::size_t e) { return squared_norm(ways_[e]) > 0; }))
         curved_.push_back(t);
-    }
   }
 
   /// Returns the edges of each invalid tet whose nodes have the longest displacement.
   std::vector<PetscInt> faulty() const {
     std::vector<PetscInt> marks(ways_.size(), 0);
     const auto way_of = [&](std::size_t e) { return shares[back_[e]] * norm(ways_[e]); };
-    for (const Index tet : curved_) {
-      if (jacobian_exceeds(curved_tet(mesh_, tet), least_jacobian)) continue;
-      double longest = 0;
-      for (const Index node : mesh_.tet_mid_nodes[tet]) longest = std::max(longest, way_of(edge_of(node)));
-      for (const Index node : mesh_.tet_mid_nodes[tet])
-        if (longest > 0 && way_of(edge_of(node)) == longest) marks[edge_of(node)] = 1;
-    }
+    for (const Index tet : curved_)
+      if (!jacobian_exceeds(curved_tet(mesh_, tet), SecondOrderOptions().least_jacobian))
+        mark_longest(edges_of(tet), way_of, marks);
     return marks;
   }
 

@@ -38,6 +38,8 @@ struct RunOptions : PipelineOptions {
   std::vector<std::string> reports = {};
   std::string trace_folder = {};  ///< folder for the steps of the run
   ProgressStyle progress = ProgressStyle::automatic;
+  unsigned levels = 1;        ///< times that every tet is cut into eight, on many ranks
+  double slack = 10;          ///< degrees by which angles may then go beyond those of the coarse mesh
   bool keep_invalid = false;  ///< write meshes with elements that no solver can use, too
   bool verbose = false, quiet = false;
   std::size_t findings = 20;  ///< findings that `check` lists for each guarantee
@@ -60,7 +62,8 @@ struct Option {
     convert = 8,
     repair = 16,
     programs = 32,
-    remesh = 64
+    remesh = 64,
+    ranks = 128  ///< collarmesh-mpi, which also takes those of `mesh`
   };
   /// The member of RunOptions that holds the value.
   struct Place {

@@ -5,6 +5,7 @@
 
 #include "check/mesh_to_check.h"
 #include "check/polyline.h"
+#include "check/predicates.h"
 
 namespace collarmesh::checks {
 
@@ -60,10 +61,9 @@ class CurveCheck {
   bool is_loop() const { return curve_.closed || curve_.ends[0] == curve_.ends[1]; }
   Index end_point(unsigned i) const { return to_check_.match.vertex_point[curve_.ends[i]]; }
 
-  void report_gap(const Point& where, const std::string& what) {
-    findings_.add(guarantee::curve_cover, where, {id_},
-                  "Curve {} (tag {}) {} at {}; it must be one chain of mesh edges from end to end.", id_,
-                  curve_.tag, what, At{where});
+  NamedFeature name() const { return {"curve", id_, curve_.tag}; }
+  void report_gap(const Point& where, std::string_view how) {
+    checks::report_gap(name(), where, how, findings_);
   }
 
   // Puts the points of the edges into chain_, in order. Returns false, with findings, if the edges form no
@@ -100,10 +100,7 @@ class CurveCheck {
       return std::find_if(first, ends.end(), [&](const auto& e) { return e[0] != point; }) - first;
     };
     const auto expect = [&](Index point, std::ptrdiff_t expected) {
-      const auto degree = degree_at(point);
-      if (degree == expected) return;
-      good = false;
-      report_gap(to_check_.point(point), fmt::format("has {} edges, not {},", degree, expected));
+      good = check_edges_at(name(), to_check_.point(point), degree_at(point), expected, findings_) && good;
     };
     if (!curve_.closed)
       for (unsigned i = 0; i < (is_loop() ? 1 : 2); ++i) expect(end_point(i), is_loop() ? 2 : 1);

@@ -16,10 +16,10 @@
 ///    distributed/src/certify.cpp, for tets in `check_tets`, for nodes in `check_points`. `gather` collects
 ///    the findings of all ranks. A measure of the whole mesh is summed in `sum_up` and judged in
 ///    `compare_with_complex`. Names for many ranks only, as "shared_places", stand there.
-/// 4. Break it on purpose in tests/fast/check_wrong_meshes_test.cpp.
-/// 5. Add the name to `guarantees` in report/html_report/facts.js and to
-///    freecad_workbench/freecad/collarmesh_workbench/guarantees.py; without it the reports show the guarantee
-///    only when it is missed.
+/// 4. Break it on purpose in tests/fast/check_wrong_meshes_test.cpp. If no solver can use a mesh that misses
+///    it, list it in command/usable.cpp.
+/// 5. Add the name to freecad_workbench/freecad/collarmesh_workbench/guarantees.py and to `guarantees` in
+///    report/html_report/facts.js; without it the reports show the guarantee only when it is missed.
 namespace collarmesh::guarantee {
 
 // Guarantees of arrays and labels.

@@ -7,6 +7,7 @@
 #include "check/mesh_to_check.h"
 #include "check/patch_topology.h"
 #include "check/polyline.h"
+#include "check/predicates.h"
 #include "common/patch_distance.h"
 #include "common/patch_points.h"
 #include "common/sort_uniquely.h"
@@ -119,14 +120,8 @@ class PatchCheck {
   // so its area counts as positive here.)
   void compare_area(double found) {
     const auto [expected, allowed] = planar_area(to_check_, id_);
-    const double difference = found - expected;
-    if (std::fabs(difference) <= allowed) return;
-    const Point& where = to_check_.plc_corner(triangle(0), 0);
-    findings_.add(
-        guarantee::patch_area, where, {id_},
-        "The faces of patch {} (tag {}) at {} have an area of {:.15g}, the patch has {:.15g}; the difference "
-        "{:.6g} is above the allowed {:.6g}. Faces are missing or doubled.",
-        id_, patch_.tag, At{where}, found, expected, difference, allowed);
+    check_measure(area_of_patch, {"patch", id_, patch_.tag}, to_check_.plc_corner(triangle(0), 0), found,
+                  expected, allowed, findings_);
   }
 
   void check_distances(std::span<const Index> patch_points) {

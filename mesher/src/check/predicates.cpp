@@ -1,5 +1,7 @@
 #include "check/predicates.h"
 
+#include <cmath>
+
 #include "mesh/orientation.h"
 
 namespace collarmesh::checks {
@@ -29,8 +31,28 @@ void check_off_feature(std::string_view guarantee, const Named& node, const Poin
                        double allowed, const NamedFeature& feature, Findings& findings) {
   if (distance <= allowed) return;
   findings.add(guarantee, at, {node.id, feature.id},
-               "{} at {} is {:.6g} away from its {} {} (tag {}), allowed is {:.6g}; move the node onto it.",
-               node, At{at}, distance, feature.kind, feature.id, feature.tag, allowed);
+               "{} at {} is {:.6g} away from its {}, allowed is {:.6g}; move the node onto it.", node, At{at},
+               distance, feature, allowed);
+}
+
+bool check_edges_at(const NamedFeature& curve, const Point& at, std::ptrdiff_t edges, std::ptrdiff_t wanted,
+                    Findings& findings) {
+  if (edges != wanted) report_gap(curve, at, fmt::format("has {} edges, not {},", edges, wanted), findings);
+  return edges == wanted;
+}
+
+void report_gap(const NamedFeature& curve, const Point& where, std::string_view how, Findings& findings) {
+  findings.add(guarantee::curve_cover, where, {curve.id},
+               "At {}, {} {}; it must be one chain of mesh edges from end to end.", At{where}, curve, how);
+}
+
+void check_measure(const Measure& measure, const NamedFeature& feature, const Point& where, double found,
+                   double expected, double allowed, Findings& findings) {
+  if (std::fabs(found - expected) <= allowed) return;
+  findings.add(measure.guarantee, where, {feature.id},
+               "The {} of {} is {:.15g} in the mesh and {:.15g} in the complex; the difference {:.6g} is "
+               "above the allowed {:.6g}. {}",
+               measure.name, feature, found, expected, found - expected, allowed, measure.reasons);
 }
 
 }  // namespace collarmesh::checks

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <string_view>
 
 #include "check/findings.h"
@@ -8,8 +9,9 @@
 #include "collarmesh/curved_tet.h"
 #include "collarmesh/geometry.h"
 
-/// Predicates for the guarantees of single tets and nodes. They take the coordinates themselves, so they work
-/// wherever the mesh is stored: `check` uses them for a whole mesh, each MPI rank for its part.
+/// Predicates for the guarantees of single tets, nodes and features. They take the measured values
+/// themselves, so they work wherever the mesh is stored: `check` uses them for a whole mesh, each MPI rank
+/// for its part.
 namespace collarmesh::checks {
 
 /// The name of an entity in findings: "Tet 5", or only "Tet" on one of many ranks, where numbers would
@@ -19,10 +21,10 @@ struct Named {
   Index id = none;
 };
 
-/// The feature that a node should lie on.
+/// A feature or region of the complex.
 struct NamedFeature {
-  std::string_view kind;  ///< "curve" or "patch"
-  Index id;
+  std::string_view kind;  ///< "curve", "patch" or "region"
+  Index id;               ///< none: all with this tag
   Tag tag;
 };
 
@@ -38,6 +40,27 @@ void check_jacobian(const Named& tet, const CurvedTet& nodes, Tag tag, Findings&
 void check_off_feature(std::string_view guarantee, const Named& node, const Point& at, double distance,
                        double allowed, const NamedFeature& feature, Findings& findings);
 
+/// Adds a finding if the edges of a curve do not meet in chains at a point of it: it must have `wanted` of
+/// them. Returns whether it has.
+bool check_edges_at(const NamedFeature& curve, const Point& at, std::ptrdiff_t edges, std::ptrdiff_t wanted,
+                    Findings& findings);
+
+/// Adds the finding that the edges of a curve are not one chain. `how` follows the curve's name.
+void report_gap(const NamedFeature& curve, const Point& where, std::string_view how, Findings& findings);
+
+/// A measure of features, and the reasons why that of the mesh may differ from that of the complex.
+struct Measure {
+  std::string_view guarantee, name, reasons;
+};
+inline constexpr Measure volume_of_region{
+    guarantee::region_volume, "volume",
+    "Tets are missing or in a wrong region, or the surface was not reproduced."},
+    area_of_patch{guarantee::patch_area, "area", "Faces are missing or doubled."};
+
+/// Adds a finding if a measure of the mesh differs from that of the complex by more than is allowed.
+void check_measure(const Measure& measure, const NamedFeature& feature, const Point& where, double found,
+                   double expected, double allowed, Findings& findings);
+
 }  // namespace collarmesh::checks
 
 template <>
@@ -47,5 +70,16 @@ struct fmt::formatter<collarmesh::checks::Named> {
   auto format(const collarmesh::checks::Named& named, Context& context) const {
     if (named.id == collarmesh::none) return fmt::format_to(context.out(), "{}", named.kind);
     return fmt::format_to(context.out(), "{} {}", named.kind, named.id);
+  }
+};
+
+template <>
+struct fmt::formatter<collarmesh::checks::NamedFeature> {
+  constexpr auto parse(format_parse_context& context) { return context.begin(); }
+  template <class Context>
+  auto format(const collarmesh::checks::NamedFeature& feature, Context& context) const {
+    if (feature.id == collarmesh::none)
+      return fmt::format_to(context.out(), "the {} with tag {}", feature.kind, feature.tag);
+    return fmt::format_to(context.out(), "{} {} (tag {})", feature.kind, feature.id, feature.tag);
   }
 };

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "check/mesh_to_check.h"
+#include "check/predicates.h"
 
 namespace collarmesh::checks {
 
@@ -30,16 +31,10 @@ void check_region_volumes(const MeshToCheck& to_check, const CheckReport& report
   const Plc& plc = to_check.plc;
   const RegionVolumes volumes = expected_volumes(to_check);
   for (Index r = 1; r < plc.regions.size(); ++r) {
-    const double expected = volumes.enclosed[r], found = report.region_volumes[r];
-    const double allowed = 1e-12 * std::fabs(expected) + volumes.allowed[r];
-    if (std::fabs(found - expected) <= allowed) continue;
-    findings.add(
-        guarantee::region_volume, plc.bounds.centre(), {r},
-        "The tets of region {} (tag {}) have a volume of {:.15g}, the complex encloses {:.15g}; the "
-        "difference "
-        "{:.6g} is above the allowed {:.6g}. Tets are missing or in a wrong region, or the surface was not "
-        "reproduced.",
-        r, plc.regions[r].tag, found, expected, found - expected, allowed);
+    const double expected = volumes.enclosed[r];
+    check_measure(volume_of_region, {"region", r, plc.regions[r].tag}, plc.bounds.centre(),
+                  report.region_volumes[r], expected, 1e-12 * std::fabs(expected) + volumes.allowed[r],
+                  findings);
   }
 }
 

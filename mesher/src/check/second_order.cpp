@@ -1,12 +1,10 @@
 // Checks of cells of second order: mid-edge nodes and the Jacobian.
 #include <algorithm>
 
-#include "check/mesh_to_check.h"
+#include "check/nodes_on_feature.h"
 #include "check/predicates.h"
 #include "collarmesh/curved_tet.h"
 #include "common/cell_shapes.h"
-#include "common/distance_tree.h"
-#include "common/segments.h"
 
 namespace collarmesh::checks {
 
@@ -101,52 +99,24 @@ void check_jacobians(const MeshToCheck& to_check, Findings& findings) {
     check_jacobian({"Tet", t}, curved_tet(mesh, t), mesh.tet_tag[t], findings);
 }
 
-void check_node(const MeshToCheck& to_check, Index node, double distance, double allowed,
-                const NamedFeature& feature, CheckReport& report, bool smooth, Findings& findings) {
-  if (smooth) report.max_surface_distance = std::max(report.max_surface_distance, distance);
-  check_off_feature(guarantee::mid_node_distance, {"The mid-edge node", node}, to_check.point(node), distance,
-                    allowed, feature, findings);
-}
-
-void check_on_curves(const MeshToCheck& to_check, CheckReport& report, Findings& findings) {
-  const Plc& plc = to_check.plc;
-  const Grouping by_curve(to_check.match.edge_curve, plc.curves.size());
-  for (Index c = 0; c < plc.curves.size(); ++c) {
+void check_on_features(const MeshToCheck& to_check, CheckReport& report, Findings& findings) {
+  const auto check = [&](const NodesOnFeature& on, Index node) {
+    on.check(guarantee::mid_node_distance, {"The mid-edge node", node}, to_check.point(node),
+             report.max_surface_distance, findings);
+  };
+  const Grouping by_curve(to_check.match.edge_curve, to_check.plc.curves.size()),
+      by_patch(to_check.match.face_patch, to_check.plc.patches.size());
+  for (Index c = 0; c < to_check.plc.curves.size(); ++c) {
     if (by_curve.size(c) == 0) continue;
-    const Plc::Curve& curve = plc.curves[c];
-    std::vector<DistanceTree::Triangle> segments;
-    visit_segments(curve, [&](Index a, Index b) {
-      segments.push_back({plc.points[a], plc.points[b], plc.points[b]});
-    });
-    const DistanceTree tree(std::move(segments));
-    for (const Index* e = by_curve.begin(c); e != by_curve.end(c); ++e) {
-      const Index node = to_check.mesh.edge_mid_nodes[*e];
-      check_node(to_check, node, tree.nearest(to_check.point(node)).distance, to_check.curve_allowance[c],
-                 {"curve", c, curve.tag}, report, !curve.straight, findings);
-    }
+    const NodesOnFeature on(to_check, {1, c});
+    for (const Index* e = by_curve.begin(c); e != by_curve.end(c); ++e)
+      check(on, to_check.mesh.edge_mid_nodes[*e]);
   }
-}
-
-void check_on_patches(const MeshToCheck& to_check, CheckReport& report, Findings& findings) {
-  const Plc& plc = to_check.plc;
-  const Grouping by_patch(to_check.match.face_patch, plc.patches.size());
-  for (Index p = 0; p < plc.patches.size(); ++p) {
+  for (Index p = 0; p < to_check.plc.patches.size(); ++p) {
     if (by_patch.size(p) == 0) continue;
-    const Plc::Patch& patch = plc.patches[p];
-    std::vector<DistanceTree::Triangle> triangles;
-    for (Index t = patch.first_triangle; !patch.planar && t < patch.first_triangle + patch.triangle_count;
-         ++t)
-      triangles.push_back({to_check.plc_corner(plc.triangles[t], 0), to_check.plc_corner(plc.triangles[t], 1),
-                           to_check.plc_corner(plc.triangles[t], 2)});
-    const DistanceTree tree(std::move(triangles));
+    const NodesOnFeature on(to_check, {2, p});
     for (const Index* f = by_patch.begin(p); f != by_patch.end(p); ++f)
-      for (const Index node : to_check.mesh.face_mid_nodes[*f]) {
-        const Point& at = to_check.point(node);
-        const double distance =
-            patch.planar ? std::fabs(dot(at - patch.origin, patch.normal)) : tree.nearest(at).distance;
-        check_node(to_check, node, distance, to_check.patch_allowance[p], {"patch", p, patch.tag}, report,
-                   !patch.planar, findings);
-      }
+      for (const Index node : to_check.mesh.face_mid_nodes[*f]) check(on, node);
   }
 }
 
@@ -172,8 +142,7 @@ void check_second_order(const MeshToCheck& to_check, CheckReport& report, Findin
   check_not_corners(to_check, findings);
   check_shared(to_check, findings);
   check_jacobians(to_check, findings);
-  check_on_curves(to_check, report, findings);
-  check_on_patches(to_check, report, findings);
+  check_on_features(to_check, report, findings);
 }
 
 }  // namespace collarmesh::checks

@@ -539,6 +539,18 @@ std::vector<Option> run_options() {
        .commands = writing | Option::repair}};
 }
 
+std::vector<Option> rank_options() {
+  return {{.name = "levels N",
+           .place = at<&RunOptions::levels>,
+           .high = 12,
+           .help = "Number of times that every tetrahedron is cut into eight"},
+          {.name = "slack DEGREES",
+           .place = at<&RunOptions::slack>,
+           .unit = Unit::degrees,
+           .high = 180,
+           .help = "Degrees by which dihedral angles may go beyond those of the coarse mesh"}};
+}
+
 /// Adds rows, with the properties that most rows of a group share. In a row, the option's name is followed by
 /// the name of its value.
 void append(std::vector<Option>& table, std::vector<Option> options, const char* group, unsigned commands) {
@@ -565,6 +577,7 @@ std::vector<Option> made_table() {
   append(table, complex_options(), complex_group, everywhere);
   append(table, budget_options(), budget_group, meshing);
   append(table, run_options(), "Options", writing);
+  append(table, rank_options(), "Refinement on many ranks", Option::ranks);
   return table;
 }
 

@@ -16,6 +16,7 @@
 #include "common/thread_limit.h"
 #include "location/triangle_hierarchy.h"
 #include "project/relaxation.h"
+#include "project/rules.h"
 #include "tolerance/facing.h"
 
 namespace collarmesh {
@@ -53,7 +54,7 @@ class BoundaryProjection {
     for (Index t = 0; t < mesh_.tets.size(); ++t)
       if (!room_.good(t)) tets.push_back(t);
     make_room(std::move(tets));
-    for (int pass = 0; pass < retries && retry(pass > 0); ++pass) {
+    for (unsigned pass = 0; pass < projection::retries && retry(pass > 0); ++pass) {
     }
     while (!(tets = keep_distances_and_narrow_places()).empty()) make_room(std::move(tets));
     finish();
@@ -68,17 +69,12 @@ class BoundaryProjection {
   // Largest distances from the exact geometry, relative to the tolerance: `largest_sag` of edges and
   // triangles between vertices, `most_off` of vertices before they move.
   static constexpr double largest_sag = 0.5, most_off = 0.75;
-  // Limit of a vertex's move, relative to its shortest edge: a longer move would pass through other tets.
-  // Such moves arise because the faces of a CAD file may be farther from their edges than features are from
-  // each other.
-  static constexpr double longest_way = 2;
-  static constexpr int retries = 2;
 
   struct Move {
     Index point;
     Point to;
     bool limited;   // stays off the exact geometry because its feature is flat
-    bool hopeless;  // the move exceeds `longest_way`
+    bool hopeless;  // the move exceeds `projection::longest_way`
     bool done = false;
     std::uint32_t tried = 0;  // number of commits after which no place was found
   };
@@ -126,7 +122,7 @@ class BoundaryProjection {
         continue;
       }
       slot_of_[p] = static_cast<Index>(moves_.size());
-      const double most = longest_way * room_.shortest_edge(p);
+      const double most = projection::longest_way * room_.shortest_edge(p);
       moves_.push_back(
           {p, *place, *place != *target, squared_distance(*place, mesh_.points[p]) > most * most});
     }

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "common/cell_shapes.h"
 #include "common/sort_uniquely.h"
 #include "delaunay/predicates.h"
+#include "project/rules.h"
 #include "remesh/shape.h"
 
 namespace collarmesh::projection {
@@ -20,13 +20,9 @@ constexpr double worthwhile = 0.9;
 // Vertices move by steps that start with this share of their shortest edge and are halved this many times.
 constexpr double first_step = 0.3;
 constexpr unsigned halvings = 5;
-// Least gain of a move, relative to the penalty before it.
-constexpr double least_gain = 1e-3;
 // Tets are relaxed until they are as good as at the beginning, or until the smallest sine of their dihedral
 // angles reaches this value.
 constexpr double good_shape = 0.2;
-// Least cosine between an edge of a curve and its initial direction.
-constexpr double least_course = 0.5;
 // Relative margin of the bounds, for rounding.
 constexpr double margin = 1e-6;
 
@@ -114,12 +110,7 @@ bool Relaxation::in_vain(Index vertex) const {
 // volume.
 double Relaxation::score(Index tet, const Corners& p) const {
   const double six = six_volume(p[0], p[1], p[2], p[3]);
-  if (six <= 0) {
-    double longest = 0;
-    for (const auto& [i, j] : cell_shapes::corner_pairs)
-      longest = std::max(longest, squared_distance(p[i], p[j]));
-    return longest > 0 ? six / (longest * std::sqrt(longest)) : -1;
-  }
+  if (six <= 0) return score_of_inverted(p, six);
   if (!in_ball(tet) && bounds_.thin != nullptr && bounds_.thin->is_thin_by_force(p, mesh_.tets[tet]) &&
       may_be_thin(tet, p))
     return 1;
@@ -280,8 +271,7 @@ void Relaxation::find_features_around() {
 
 bool Relaxation::on_course(Index edge) const {
   const auto& [a, b] = mesh_.edges[edge];
-  const Vector then = origins_[b] - origins_[a], now = mesh_.points[b] - mesh_.points[a];
-  return dot(then, now) > least_course * norm(then) * norm(now);
+  return projection::on_course(origins_[b] - origins_[a], mesh_.points[b] - mesh_.points[a]);
 }
 
 bool Relaxation::keeps_course(Index vertex) {

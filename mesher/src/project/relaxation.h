@@ -44,8 +44,7 @@ class Relaxation {
   /// Returns whether the tet has positive volume and is within its bound.
   bool good(Index tet) const;
 
-  /// Returns whether a mesh edge of a curve has turned by less than 60 degrees. If it turned by more, a
-  /// vertex has passed its neighbour.
+  /// Returns whether a mesh edge of a curve has not turned too far.
   bool on_course(Index edge) const;
   /// Returns whether all mesh edges of curves at the vertex are on course.
   bool keeps_course(Index vertex);

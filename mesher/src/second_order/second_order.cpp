@@ -26,10 +26,6 @@ namespace {
 
 using remeshing::UnwantedTet;
 
-// A node farther than this from the middle of its edge, relative to the edge, does not belong to the edge:
-// the nearest point lies on another part of the feature. A half circle has the ratio 0.5.
-constexpr double farthest = 0.5;
-
 // Two edges have the same tangent if the area between their tangents is smaller than this share of the area
 // between the edges.
 constexpr double least_turn = 0.15;
@@ -146,8 +142,7 @@ class TetCurving {
         }
         untangling_.keep(e);
       }
-      const bool belongs = length <= farthest * edge_length;  // also false for NaN
-      moves_.push_back({e, way, belongs ? 1.0 : 0.0});
+      moves_.push_back({e, way, PlacesOnFeatures::belongs(length, edge_length) ? 1.0 : 0.0});
     }
   }
 
@@ -284,7 +279,7 @@ class TetCurving {
     std::ranges::sort(drawn, {}, [&](Index m) { return std::pair(-left(m), m); });
     for (const Index m : drawn) {
       if (execution_.cancelled()) return;
-      if (norm(moves_[m].way) > farthest * length_of(moves_[m].edge)) continue;
+      if (!PlacesOnFeatures::belongs(norm(moves_[m].way), length_of(moves_[m].edge))) continue;
       double low = moves_[m].share, high = 1;
       for (double share = high; high - low > forward_precision; share = 0.5 * (low + high)) {
         moves_[m].share = share;

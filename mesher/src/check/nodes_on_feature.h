@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string_view>
+
+#include "check/mesh_to_check.h"
+#include "check/predicates.h"
+#include "common/distance_tree.h"
+
+namespace collarmesh::checks {
+
+/// A curve or patch of the complex, from which its nodes may be only so far away.
+class NodesOnFeature {
+ public:
+  /// Keeps the to_check by reference.
+  NodesOnFeature(const MeshToCheck& to_check, const TetMesh::VertexFeature& feature);
+
+  /// Adds a finding if a node is farther away than is allowed. If the feature is smooth, raises `largest` to
+  /// the distance.
+  void check(std::string_view guarantee, const Named& node, const Point& at, double& largest,
+             Findings& findings) const;
+
+ private:
+  const MeshToCheck& to_check_;
+  TetMesh::VertexFeature feature_;
+  DistanceTree pieces_;  // triangles or segments; empty for a planar patch
+};
+
+}  // namespace collarmesh::checks
