@@ -15,11 +15,11 @@
 namespace collarmesh {
 
 struct CheckOptions {
-  /// The bounds to check against. If the mesh marks thin tets, only marked ones may be thin. Cells of a
-  /// collar are exempt at creases only.
+  /// The bounds to check against. If the mesh marks thin tets, only marked ones may be thin. Tets marked
+  /// as cells of a collar count as such at creases only.
   Bounds bounds = {};
-  ShapeMeasures exact = {};  ///< measures of the exact geometry behind the complex; where NaN or missing,
-                             ///< those of the complex count
+  ShapeMeasures exact = {};  ///< measures of the exact geometry behind the complex; where one is NaN or
+                             ///< missing, that of the complex counts
   std::size_t findings_per_guarantee = 20;  ///< further findings are counted but not listed
   unsigned threads = 0;                     ///< maximum number of threads; 0: all cores
 };
@@ -46,6 +46,7 @@ struct CheckReport {
   std::vector<Finding> findings;
   std::size_t findings_total = 0;  ///< findings, including those not listed
   /// Sentences about labels that differ from the complex's, so that features were matched by position.
+  /// `run_pipeline` adds sentences about its attempts.
   std::vector<std::string> notes;
   std::vector<std::string> warnings;  ///< sentences about volumes and thin places that changed noticeably
   // Measurements of the mesh:

@@ -43,7 +43,7 @@ void require_valid(const PipelineOptions& options, std::span<const double> sizes
   }
 }
 
-/// Predicts the mesh of a complex with regions. `options` contain the size.
+/// Predicts the mesh of a complex with regions. `size` is the one in `options` or, if that is 0, its default.
 Prediction predict_one(const prediction::Shape& shape, const PipelineOptions& options, double size) {
   const std::array models{prediction::Model(), prediction::model_of_refinement()};
   std::array<double, 2> tets{};
