@@ -28,7 +28,7 @@ namespace collarmesh::files {
 namespace {
 
 constexpr double share_of_triangles = 0.1;  // relative to the distance that the mesh may have from the shape
-constexpr double finest = 4;  // limit on how much finer triangles get than the first ones, as a factor
+constexpr double finest = 4;  // triangles of CAD faces get at most this many times finer than the first ones
 
 bool may_be_too_coarse(const PlcError& error) {
   return std::all_of(error.faults.begin(), error.faults.end(), [](const PlcFault& fault) {

@@ -120,7 +120,7 @@ class ComplexInput {
     std::vector<Tag> patch_numbers, curve_numbers;  // tags before names were applied
   };
 
-  /// A complex that was built, with the options.
+  /// A complex that was built, and the options for it.
   struct Known {
     PlcOptions options;
     RepairOptions repair;

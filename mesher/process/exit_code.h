@@ -2,8 +2,9 @@
 
 namespace collarmesh::process {
 
-/// The program's exit codes. The mesh is written with codes 0 and 7 only. With 7 `collarmesh` does not write
-/// it if it has elements that no solver can use, unless --keep-invalid is given; `collarmesh-mpi` does.
+/// The program's exit codes. The mesh is written with codes 0 and 7 only. With 7 it may
+/// have elements that no solver can use. `collarmesh` writes such a mesh only if --keep-invalid is given,
+/// `collarmesh-mpi` always.
 enum class ExitCode {
   success = 0,
   internal_error = 1,

@@ -82,7 +82,7 @@ struct MeshOptions {
   bool count_work = false;  ///< fill in MeshStatistics::counts, which takes some time
 };
 
-/// Returns the options with those that their profile sets.
+/// Returns the options with the changes that their profile makes.
 MeshOptions with_profile(MeshOptions options);
 
 /// Returns MeshOptions::size, or its default for this complex if it is 0.
@@ -135,10 +135,9 @@ struct MeshStatistics {
                                        ///< outside
   std::size_t vertices_in_blocks = 0;  ///< vertices inserted in blocks that several threads may refine
   std::size_t cells = 0;
-  std::size_t exact_predicates = 0;  ///< decisions that the floating-point filter left to exact arithmetic
-  std::size_t warps = 0,
-              yields = 0;      ///< destroy() calls that warped to input or yielded to a lower dimension
-  std::size_t peak_bytes = 0;  ///< memory of the mesh structures
+  std::size_t exact_predicates = 0;   ///< decisions that the floating-point filter left to exact arithmetic
+  std::size_t warps = 0, yields = 0;  ///< destroy() calls that warped, or that yielded to a lower dimension
+  std::size_t peak_bytes = 0;         ///< memory of the mesh structures
   double seconds = 0;
   WorkCounts counts;
 };

@@ -107,7 +107,7 @@ struct Option {
 /// Returns all options, in the order of the help. Some have a second row for another command.
 const std::vector<Option>& option_table();
 
-/// Returns the options with those that the profile of `mesh` sets.
+/// Returns the options with the changes that the profile of `mesh` makes.
 RunOptions with_profile(RunOptions options);
 
 /// Throws OptionError for values out of the range of their option and for values that contradict each other.

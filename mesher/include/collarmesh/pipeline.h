@@ -69,7 +69,7 @@ struct PipelineOptions {
   bool smooth_surface = false;
 };
 
-/// Returns the options with those that the profile of `mesh` sets.
+/// Returns the options with the changes that the profile of `mesh` makes.
 PipelineOptions with_profile(PipelineOptions options);
 
 /// The result of a run. It has a mesh only if `result.status` is complete or guarantee_missed.
