@@ -167,7 +167,8 @@ CLI::App* add_repair_command(CLI::App& app, RepairArguments& a) {
   return repair;
 }
 
-/// Returns the reason why a path has no known format: a missing library, or its extension.
+/// Returns the end of a message about a path without a known format: its extension, or the library that is
+/// missing.
 std::string extension_list(const std::string& path) {
   if (const std::string missing = io::missing_library(path); !missing.empty())
     return "cannot be written: " + missing;

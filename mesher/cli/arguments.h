@@ -33,8 +33,8 @@ struct InfoArguments : RunOptions {
 /// standard input or standard output.
 struct ConvertArguments : MeshArguments {
   std::vector<std::string> meshing_options;  ///< given options that only meshing uses
-  bool repairs = false;  ///< whether to repair surfaces that become surfaces: --repair was given and is not
-                         ///< none
+  bool repairs = false;  ///< whether to repair surfaces that are converted to surfaces: --repair is given
+                         ///< with a value other than none
 };
 
 /// The arguments of `collarmesh repair IN... -o OUT`; "-" as in ConvertArguments. There is at most one

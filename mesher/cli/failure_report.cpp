@@ -64,7 +64,7 @@ Json failure_json(const Command& command, const process::StageReached& reached, 
   return json;
 }
 
-/// Returns a page without a mesh.
+/// Returns a page that tells why there is no mesh.
 std::string failure_page(const Json& json) {
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>no mesh</title></head><body>\n"

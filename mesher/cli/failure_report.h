@@ -5,8 +5,8 @@
 
 namespace collarmesh::cli {
 
-/// Makes a later failure of this command write the requested reports, if it makes a mesh: the error, its
-/// stage, and the progress so far.
+/// If this command makes a mesh, lets a later failure write the requested reports: the error, its stage, and
+/// the progress so far.
 void report_failures_of(process::Process& process, const Arguments& arguments);
 
 }  // namespace collarmesh::cli

@@ -113,8 +113,8 @@ void tell_of(const process::Console& console, const MeshArguments& arguments, co
                            io::format_of(arguments.output, arguments.output_format), run.result.mesh)));
 }
 
-/// Throws Stopped if the certificate found an element that no solver can use. Prints the findings and writes
-/// the trace before.
+/// Throws Stopped if the certificate found an element that no solver can use. Before that,
+/// prints the findings and writes the trace.
 void require_usable(process::Process& process, const MeshArguments& arguments, Stages& stages,
                     const report::MeshRun& run) {
   const auto tell = [&] {

@@ -6,7 +6,7 @@ namespace collarmesh::command {
 
 namespace {
 
-/// Work of OpenCASCADE: it is supervised, and its costs are recorded apart.
+/// A report of work of OpenCASCADE during its lifetime, to the supervisor and to the record of costs.
 class CadPart {
  public:
   CadPart(process::Supervisor& supervisor, std::string_view doing, std::string_view file, double seconds)

@@ -12,11 +12,11 @@ namespace collarmesh::command {
 
 namespace {
 
-// The bound on the ratio for which termination is proved. On test shapes refinement also ended with lower
-// bounds, down to 1.1, but never with 1 (doc/theory.md).
+// The lowest bound on the radius-edge ratio for which termination is proved in the plane (doc/theory.md). On
+// test shapes refinement also ended with lower bounds, down to 1.1, but never with 1 (doc/limits.md).
 constexpr double proved_radius_edge = std::numbers::sqrt2;
-// The lowest bounds that test shapes reached (doc/architecture/collars.md), and that coarsened shapes reached
-// (doc/architecture/coarsening.md).
+// The lowest bounds on collar angles that meshes of test shapes kept: without coarsening
+// (doc/architecture/collars.md), and after it (doc/architecture/coarsening.md).
 constexpr double reached_collar_angle = 130, reached_coarsened = 120;
 // Limits relative to the diagonal.
 constexpr double small_distance = 1e-5, large_planar_tolerance = 1e-3;

@@ -88,8 +88,8 @@ std::string usage_message(const CLI::App& app, const CLI::Error& error) {
     return fmt::format("{}; write {}", said,
                        usage_of(&command_of(app) == &app ? "" : command_of(app).get_name()));
   if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr) {
-    // Values are checked before they are converted, so the option must be a flag: "Could not convert: --quiet
-    // = 5".
+    // The option is a flag, because values of other options are checked before they are converted. The
+    // message is "Could not convert: --quiet = 5".
     const std::size_t begin = said.find("--"), end = said.find(' ', begin);
     const std::string name = begin == std::string::npos ? said : said.substr(begin, end - begin);
     return fmt::format("{}: takes no value; write {} alone", name, name);

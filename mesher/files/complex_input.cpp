@@ -28,7 +28,7 @@ namespace collarmesh::files {
 namespace {
 
 constexpr double share_of_triangles = 0.1;  // relative to the distance that the mesh may have from the shape
-constexpr double finest = 4;                // the finest triangles of CAD faces, relative to the first ones
+constexpr double finest = 4;  // triangles of CAD faces get at most this many times finer than the first ones
 
 bool may_be_too_coarse(const PlcError& error) {
   return std::all_of(error.faults.begin(), error.faults.end(), [](const PlcFault& fault) {
@@ -79,7 +79,7 @@ std::string advice(const PlcError& error, const RepairOptions& options, bool of_
       open ? "close the surface, mesh it with triangles (--dimension 2), " : "", wider);
 }
 
-// All members, for comparison.
+// Returns all members, for comparison.
 auto all_of(const PlcOptions& options) {
   const auto& [domain, box_margin, feature_angle, planar_tolerance, weld, require_solid] = options;
   return std::tie(domain, box_margin, feature_angle, planar_tolerance, weld, require_solid);
@@ -285,8 +285,8 @@ Plc ComplexInput::build_valid(const PlcOptions& options, const RepairOptions& re
   return take(remove_noise(build_plc(soups_, options), soups_, options, repair, watched()));
 }
 
-/// Builds the complex like `build_valid`, but throws PlcError if there is noise and none is allowed, before
-/// the repair, which would be the most expensive part.
+/// Builds the complex like `build_valid`. If there is noise and none is allowed, throws PlcError before the
+/// repair, which would be the most expensive part.
 Plc ComplexInput::build_finer(const PlcOptions& options, const RepairOptions& repair, bool with_noise) {
   if (with_noise) return build_valid(options, repair);
   Plc plc = build_plc(soups_, options);
@@ -326,7 +326,7 @@ Plc ComplexInput::resolved(Plc plc, const std::set<SoupFace>& fine, const PlcOpt
     }
     built_ = {};
   }
-  tessellate(1);  // a partial cut leaves files without such faces as they are
+  tessellate(1);  // everywhere: the next call leaves files without such faces as they are
   if (!fine.empty()) tessellate(finest, fine);
   built_ = std::move(coarse);
   return plc;

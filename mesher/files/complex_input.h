@@ -46,8 +46,8 @@ struct InputReading {
 /// Returns the settings for reading that the options of a run give.
 InputReading reading_of(const RunOptions& options, const std::string& format = {});
 
-/// Does the same for the input of a mesh: triangles of CAD shapes are as fine as its sizes ask for. Meshes of
-/// surfaces do not need finer ones, which only keep volumes. The result refers to `options`, which must
+/// Returns these settings for the input of a mesh: triangles of CAD shapes are as fine as its sizes ask for.
+/// For meshes of solids they are also fine enough to keep volumes. The result refers to `options`, which must
 /// outlive it.
 InputReading reading_for_mesh(const RunOptions& options, const std::string& format = {});
 
@@ -120,7 +120,7 @@ class ComplexInput {
     std::vector<Tag> patch_numbers, curve_numbers;  // tags before names were applied
   };
 
-  /// A complex that was built, with the options.
+  /// A complex that was built, and the options for it.
   struct Known {
     PlcOptions options;
     RepairOptions repair;
@@ -137,7 +137,7 @@ class ComplexInput {
   Built built_;
   std::vector<Known> known_;  // the last repaired complexes
 
-  /// The first complex with features numbered by the program, without names.
+  /// The first complex whose features the program numbered, before they got names, and its options.
   struct First {
     PlcOptions options;
     std::optional<double> target_size;

@@ -21,7 +21,7 @@ constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 /// Corrects the size of a feature of the complex by the difference between the exact CAD measure and that of
 /// the tessellation. Returns NaN if the measure belongs to another feature.
 double corrected(double in_complex, const brep::CadMeasure& measure) {
-  constexpr double share = 1e-4;  // relative change by repair that is accepted without a warning
+  constexpr double share = 1e-4;  // largest relative change of a feature that still counts as the same
   if (!(std::fabs(in_complex - measure.cut) <= share * measure.cut)) return unknown;
   return in_complex + (measure.exact - measure.cut);
 }

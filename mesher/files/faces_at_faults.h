@@ -9,7 +9,7 @@
 
 namespace collarmesh::files {
 
-/// The facets of a soup with one tag, as those of a face of a CAD shape.
+/// A soup and a tag, for its facets with this tag, such as those of one face of a CAD shape.
 using SoupFace = std::pair<Index, Tag>;
 
 /// Returns the faces with a facet at the place of a fault. Cost: facets times faults, of which PlcError holds

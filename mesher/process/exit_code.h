@@ -2,8 +2,8 @@
 
 namespace collarmesh::process {
 
-/// The exit codes. The mesh is written with codes 0 and 7 only; with 7 not if it has elements that no solver
-/// can use, unless --keep-invalid is given.
+/// The programs' exit codes. The mesh is written with codes 0 and 7 only. With 7 it may have elements that no
+/// solver can use; such a mesh is written only if --keep-invalid is given.
 enum class ExitCode {
   success = 0,
   internal_error = 1,

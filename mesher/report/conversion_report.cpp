@@ -19,7 +19,7 @@ namespace collarmesh::report {
 
 namespace {
 
-/// The data that a format can store besides corners of cells and points, which all store.
+/// The data that a format can store in addition to points and corners of cells, which all formats store.
 struct Kept {
   std::string_view format;
   bool facet_tags = false, segments = false, point_tags = false, regions = false, names = false;

@@ -42,7 +42,7 @@ void append_creases(std::string& text, const Plc& plc, const std::vector<Crease>
   if (creases.size() > listed) fmt::format_to(Out(text), "    ... and {} more\n", creases.size() - listed);
 }
 
-/// Describes shapes. A ratio of 0 means that there is no such tetrahedron.
+/// Describes the shapes of tets outside collars. A ratio of 0 means that all of these are thin.
 std::string shape_text(double min_dihedral, double max_dihedral, double max_radius_edge) {
   if (max_dihedral == 0) return "all tets in collars";
   return fmt::format("dihedral angles from {:.2f} to {:.2f} degrees, {}", min_dihedral, max_dihedral,

@@ -11,8 +11,9 @@ namespace {
 
 using State = TraceStep::State;
 
-/// Makes a mesh from the tets of a step that are worth showing, with the faces between their points. Tets
-/// about to be ripped out are marked as both in a collar and thin, a combination that no other tet has.
+/// Makes a mesh from the tets of a step, with the faces between their points. Leaves out tets outside all
+/// regions, unless there are no others. Tets about to be ripped out are marked as both in a collar and thin,
+/// a combination that no other tet has.
 TetMesh mesh_of(const TraceStep& step) {
   TetMesh mesh;
   mesh.points = step.points;

@@ -11,23 +11,23 @@ namespace collarmesh {
 struct Bounds {
   double radius_edge = 2;  ///< largest circumradius / shortest edge in regions, outside collars; at least 1
   /// Smallest dihedral angle that thin tets, those that exceed `radius_edge`, may have; 0: no tet may be
-  /// thin. At a crease sharper than this, half of the crease's angle is enough. Where the input forces edges
-  /// to be short, as across a thin wall, half of the angle that such edges permit is enough. Dihedral and
-  /// face angles of thin tets are at most 150.
+  /// thin. At a crease sharper than twice this, half of the crease's angle is enough. Where the input forces
+  /// edges to be short, as across a thin wall, half of the angle that such edges permit is enough. Dihedral
+  /// and face angles of thin tets are at most 150.
   double thin_angle = 8;
   /// Allows thin tets only at creases and in narrow places; if false, anywhere. A place is narrow if two
   /// features without a common point, or two features that meet in a crease, are closer there than the
   /// longest edge of the tet divided by `radius_edge`.
   bool thin_in_narrow_places_only = false;
   double collar_angle = 150;  ///< largest dihedral angle in collars; 100 to 175
-  double crease_angle = 60;   ///< features that meet below it form a crease and get a collar
+  double crease_angle = 60;   ///< features that meet at a smaller angle form a crease and get a collar
   /// Largest distance of the mesh from smooth patches and curves, absolute; 0: `default_tolerance`.
   double distance = 0;
   std::optional<SurfaceTolerance> tolerance = {};  ///< a tolerance that depends on the place; replaces
                                                    ///< `distance`
-  /// Share by which bounds are tighter until later stages have moved vertices (`project_boundary`): the
-  /// bounds on angles of thin tets, measured from 0 and 180 degrees, and the bound on the width of narrow
-  /// places. 0 to 0.5.
+  /// Share by which some bounds are tightened until later stages have moved vertices (`project_boundary`):
+  /// the bounds on angles of thin tets, as distances from 0 or 180 degrees, and the bound on the width of
+  /// narrow places. 0 to 0.5.
   double reserve = 0;
   /// Lowers the bound on the smallest angle of thin tets where the input forces edges to be short. Every mesh
   /// made with false also keeps the bounds for true.

@@ -15,11 +15,11 @@
 namespace collarmesh {
 
 struct CheckOptions {
-  /// The bounds to check against. If the mesh marks thin tets, only marked ones may be thin. Cells of a
-  /// collar are exempt at creases only.
+  /// The bounds to check against. If the mesh marks thin tets, only marked ones may be thin. Tets marked
+  /// as cells of a collar count as such at creases only.
   Bounds bounds = {};
-  ShapeMeasures exact = {};  ///< measures of the exact geometry behind the complex; where NaN or missing,
-                             ///< those of the complex count
+  ShapeMeasures exact = {};  ///< measures of the exact geometry behind the complex; where one is NaN or
+                             ///< missing, that of the complex counts
   std::size_t findings_per_guarantee = 20;  ///< further findings are counted but not listed
   unsigned threads = 0;                     ///< maximum number of threads; 0: all cores
 };
@@ -46,6 +46,7 @@ struct CheckReport {
   std::vector<Finding> findings;
   std::size_t findings_total = 0;  ///< findings, including those not listed
   /// Sentences about labels that differ from the complex's, so that features were matched by position.
+  /// `run_pipeline` adds sentences about its attempts.
   std::vector<std::string> notes;
   std::vector<std::string> warnings;  ///< sentences about volumes and thin places that changed noticeably
   // Measurements of the mesh:
@@ -75,16 +76,15 @@ struct CheckReport {
 };
 
 /// Recomputes every guarantee from the mesh alone, independently of how it was made: positive volumes,
-/// conformity, watertight regions, region volumes, curves as unions of edges, facets as unions of faces with
-/// equal area, radius-edge ratio or angles, surface distance.
-/// A region may lose or gain 5% of its volume with elements of first order, 1% with those of second order,
-/// unless the bounds ask for a distance; a warning names regions that are more than 2% off. The same
-/// allowance holds for the volumes that closed surfaces enclose (`shells_of`). Averaged over a patch, walls
-/// keep at least half of their thickness and gaps half of their width.
-/// A mesh read from a file (no feature indices) is matched to the complex by tags and position; it is matched
-/// by position alone if its tags are not the complex's or if it has no boundary triangles or curve edges.
-/// Tets count as cells of a collar only at creases of the complex. Cancellation takes effect between groups
-/// of guarantees.
+/// conformity, watertight regions, region volumes, curves as unions of edges, facets as unions of faces,
+/// equal areas of facets, radius-edge ratio or angles, surface distance. A region may lose or gain 5% of its
+/// volume with elements of first order, 1% with those of second order, unless the bounds ask for a distance;
+/// a warning names regions that are more than 2% off. The same allowance holds for the volumes that closed
+/// surfaces enclose (`shells_of`). Averaged over a patch, walls keep at least half of their thickness and
+/// gaps half of their width. A mesh read from a file (no feature indices) is matched to the complex by tags
+/// and position; it is matched by position alone if its tags are not the complex's or if it has no boundary
+/// triangles or curve edges. Tets count as cells of a collar only at creases of the complex. Cancellation
+/// takes effect between groups of guarantees.
 CheckReport check(const TetMesh& mesh, const Plc& plc, const CheckOptions& options = {},
                   const Execution& execution = {});
 

@@ -17,8 +17,9 @@ struct ImproveOptions {
   double thin_above = 0;  ///< radius-edge ratio above which later stages call tets thin; 0: the bound on the
                           ///< ratio
   bool move_vertices = true;   ///< also move, insert and remove vertices instead of only changing connections
-  bool keep_vertices = false;  ///< insert and remove no vertices beside thin tets unless an angle exceeds
-                               ///< the bound for thin tets: a coarsened mesh has as few vertices as it needs
+  bool keep_vertices = false;  ///< at corners of thin tets insert and remove no vertices, unless an angle
+                               ///< exceeds the bound for thin tets: a coarsened mesh has as few vertices as
+                               ///< it needs
   double edges_per_hole = 0;   ///< as MeshOptions::edges_per_hole
   unsigned passes = 3;         ///< maximum number of passes, each over the tets that are still poor
   unsigned threads = 0;        ///< maximum number of threads; 0: all cores. The result does not depend on it

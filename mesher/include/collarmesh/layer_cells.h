@@ -11,8 +11,8 @@ namespace collarmesh {
 /// Cells of boundary layers other than tets, with the quadrangles at their sides. They conform to the tets
 /// and triangles of a mesh, whose points they use. Arrays of a kind of cell have the same length.
 struct LayerCells {
-  /// Corners a, b, c of the triangle at the wall or nearer to it, then those above them, d, e, f, on the side
-  /// to which (b-a) x (c-a) points.
+  /// Corners of a prism: a, b, c of the triangle that lies on the wall or is nearer to it, then d, e, f above
+  /// them. (b-a) x (c-a) points to the side of d, e, f.
   std::vector<std::array<Index, 6>> prisms;
   std::vector<Index> prism_region;         ///< index of the region in the complex, from 1
   std::vector<Tag> prism_tag;              ///< tag of that region

@@ -18,7 +18,7 @@ namespace collarmesh {
 /// The layers at some faces.
 struct WallLayers {
   std::vector<std::string> faces = {};  ///< names or numbers of patches; empty: all boundaries
-  double first = 0;      ///< height of the first layer, absolute; 0: a tenth of the edges there
+  double first = 0;      ///< height of the first layer, absolute; 0: a tenth of the edge length there
   double growth = 1.2;   ///< ratio of the heights of a layer and the one before it, at least 1
   unsigned count = 3;    ///< number of layers, at least 1
   double thickness = 0;  ///< total height of the layers, absolute, in place of `first`; 0: not given
@@ -49,7 +49,7 @@ struct LayersReport {
     double area = 0;     ///< area of the wall, absolute
     double covered = 0;  ///< part of that area that all layers cover, absolute
     double asked = 0;    ///< total height asked for, absolute
-    double mean = 0;     ///< mean of the total height reached, by area
+    double mean = 0;     ///< mean of the total height reached, weighted by area
     /// Histogram over the wall's area: entry i is the area where layers reach 0.1 i to 0.1 (i + 1) of the
     /// height asked for.
     std::array<double, 10> histogram{};
@@ -83,7 +83,7 @@ void require_known_walls(const LayerOptions& options, const Plc& plc);
 /// layers. There, prisms become pyramids and tets. In second order the edges of walls keep their nodes, and
 /// their bulges fade towards the tets. Precondition: `mesh` comes from `generate` for `plc`. Same mesh and
 /// options: same result, with any number of threads. If cancelled, the mesh has first order and no layers.
-/// Throws OptionError as `require_known_walls`. Cost: near linear in the tets.
+/// Throws OptionError as `require_known_walls` does. Cost: near linear in the tets.
 LayersReport make_layers(TetMesh& mesh, const Plc& plc, const LayerOptions& options,
                          const ImproveOptions& improvement, const SecondOrderOptions& second_order = {},
                          const Execution& execution = {});

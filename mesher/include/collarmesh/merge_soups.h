@@ -22,7 +22,7 @@ struct MergeSoupsOptions {
 /// Counts of the changes that `merge_soups` made.
 struct MergeReport {
   Index welded_points = 0;      ///< points merged with another one
-  Index unused_points = 0;      ///< points that no facet or segment uses: dropped, except those of a complex
+  Index unused_points = 0;      ///< points dropped because nothing uses them; complexes keep such points
   Index cut_facets = 0;         ///< facets that became triangles
   Index degenerate_facets = 0;  ///< facets with fewer than three corners after welding: dropped
   Index repeated_facets = 0;    ///< duplicate facets, in either direction: dropped

@@ -20,7 +20,7 @@ namespace collarmesh {
 /// the same.
 enum class CollarCreation { in_pass, up_front };
 
-/// A setting for the refinement as a whole: meshes for use, or exactly what the paper's proofs assume.
+/// A choice between refinement for practical meshes and refinement exactly as the paper's proofs assume it.
 enum class Profile {
   standard,
   /// Makes exactly the assumptions of the proofs. All features that meet below 90 degrees are creases. A
@@ -82,7 +82,7 @@ struct MeshOptions {
   bool count_work = false;  ///< fill in MeshStatistics::counts, which takes some time
 };
 
-/// Returns the options with those that their profile sets.
+/// Returns the options with the changes that their profile makes.
 MeshOptions with_profile(MeshOptions options);
 
 /// Returns MeshOptions::size, or its default for this complex if it is 0.
@@ -110,10 +110,10 @@ enum class MeshStatus {
 
 /// Counts of the work that the paper's analysis bounds; filled in if MeshOptions::count_work is set.
 struct WorkCounts {
-  std::size_t located = 0;         ///< points and protective balls that were located at a mesh vertex
-  std::size_t relocated = 0;       ///< moves of such a point or ball to a new, nearer vertex
-  std::size_t looks = 0;           ///< inspections of such a point or ball for a new vertex or a candidate
-  std::size_t gap_queries = 0;     ///< queries of the gap size, with collars created in the pass
+  std::size_t located = 0;    ///< points and protective balls that were located at a mesh vertex
+  std::size_t relocated = 0;  ///< moves of such a point or ball to a new, nearer vertex
+  std::size_t looks = 0;      ///< inspections of such a point or ball because of a new vertex or a candidate
+  std::size_t gap_queries = 0;     ///< queries of the gap size, with collars created during refinement
   std::size_t gap_cells = 0;       ///< Voronoi cells that these queries explored
   std::size_t gap_interviews = 0;  ///< pieces of features whose distance the queries of gap sizes computed
   std::size_t largest_degree = 0;  ///< largest number of neighbours of a new vertex
@@ -136,7 +136,7 @@ struct MeshStatistics {
   std::size_t vertices_in_blocks = 0;  ///< vertices inserted in blocks that several threads may refine
   std::size_t cells = 0;
   std::size_t exact_predicates = 0;   ///< decisions that the floating-point filter left to exact arithmetic
-  std::size_t warps = 0, yields = 0;  ///< destroy() calls that warped to input or yielded to a lower ball
+  std::size_t warps = 0, yields = 0;  ///< destroy() calls that warped, or that yielded to a lower dimension
   std::size_t peak_bytes = 0;         ///< memory of the mesh structures
   double seconds = 0;
   WorkCounts counts;

@@ -45,7 +45,7 @@ struct RunOptions : PipelineOptions {
   std::size_t findings = 20;  ///< findings that `check` lists for each guarantee
 };
 
-/// The value of an option. Words stand for enumerations.
+/// The value of an option; for an enumeration, its word.
 using OptionValue =
     std::variant<bool, std::uint64_t, double, std::string, std::map<Tag, double>, std::vector<std::string>>;
 
@@ -72,11 +72,11 @@ struct Option {
     void (*set)(const Option&, RunOptions&, const OptionValue&);
   };
 
-  std::string name;             ///< long name, "size-min"
-  char letter = 0;              ///< the short name, if there is one
-  std::string value_name = {};  ///< the name of its value, "LENGTH"
-  std::vector<std::string> words =
-      {};  ///< the words of a choice, in the order of the enumeration; of a bool: true, false
+  std::string name;                     ///< long name, "size-min"
+  char letter = 0;                      ///< the short name, if there is one
+  std::string value_name = {};          ///< the name of its value, "LENGTH"
+  std::vector<std::string> words = {};  ///< the words of a choice, in the order of the enumeration; for a
+                                        ///< bool, the words for true and false
   Place place;
   Unit unit = Unit::number;
   double low = 0, high = std::numeric_limits<double>::infinity();  ///< range of a number
@@ -107,10 +107,10 @@ struct Option {
   std::string default_value() const;
 };
 
-/// All options, in the order of the help. Some have a second row for another command.
+/// Returns all options, in the order of the help. Some have a second row for another command.
 const std::vector<Option>& option_table();
 
-/// Returns the options with those that the profile of `mesh` sets.
+/// Returns the options with the changes that the profile of `mesh` makes.
 RunOptions with_profile(RunOptions options);
 
 /// Throws OptionError for values out of the range of their option and for values that contradict each other.

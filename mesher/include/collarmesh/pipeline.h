@@ -25,7 +25,7 @@
 #include "collarmesh/trace.h"
 
 /// The stages from facets to a certified mesh, as the program `collarmesh` runs them: repair, refine,
-/// coarsen, improve, project onto exact geometry, raise the order, check, split.
+/// coarsen, improve, project onto exact geometry, raise the order, check, add boundary layers, split.
 namespace collarmesh {
 
 /// The mesh that a run begins with.
@@ -52,7 +52,7 @@ struct PipelineOptions {
   std::vector<std::string> faces =
       {};  ///< names or numbers of the patches to mesh with triangles; empty: all
   /// Number of seeds to try, from `mesh.seed` on, until every guarantee holds; at least 1. If no seed
-  /// succeeds, the first mesh is kept.
+  /// succeeds, the first mesh is kept; of meshes from constrained tetrahedra, the one with fewest findings.
   unsigned seeds = 2;
   SplitOptions split = {};   ///< internal patches that get nodes of their own on each side, after the check
   LayerOptions layers = {};  ///< boundary layers, made after the check and before the split
@@ -64,12 +64,12 @@ struct PipelineOptions {
   /// so that its vertices can move onto this geometry; may be empty.
   ExactGeometry exact = {};
   ShapeMeasures exact_measures = {};  ///< measures of that geometry, for the certificate; may be empty
-  /// For `remesh` without a complex: nodes on curved faces and curves go to a smooth surface through the
-  /// nodes of the given mesh, which stays within the surface distance of its triangles.
+  /// For `remesh` without a complex: moves nodes on curved faces and curves onto a smooth surface. It passes
+  /// through the nodes of the given mesh and stays within the surface distance of that mesh's triangles.
   bool smooth_surface = false;
 };
 
-/// Returns the options with those that the profile of `mesh` sets.
+/// Returns the options with the changes that the profile of `mesh` makes.
 PipelineOptions with_profile(PipelineOptions options);
 
 /// The result of a run. It has a mesh only if `result.status` is complete or guarantee_missed.
@@ -104,16 +104,17 @@ class ComplexSource {
   virtual ~ComplexSource() = default;
   /// Builds the next complex. The report says whether it was cancelled. Throws PlcError.
   virtual RepairedPlc build(const RepairOptions& repair, const Execution& execution) = 0;
-  /// Sets the options that depend on the complex built last, such as sizes by place and exact geometry; they
-  /// may keep references to it. Throws OptionError.
+  /// Sets the options that depend on the complex built last, such as sizes by place and exact geometry. The
+  /// options may keep references to that complex. Throws OptionError.
   virtual void adapt(const Plc& plc, PipelineOptions& options) = 0;
 };
 
 /// Meshes the solids of a complex, and certifies the mesh against it. If a guarantee is missed, tries further
 /// repairs (`further_repairs`), then constrained tetrahedra if angles miss their bounds, then further seeds;
-/// if no mesh passes, the first one is kept. Where features thinner than the feature size make a refinement
-/// far too fine, tries constrained tetrahedra, then coarser repairs (`coarser_repairs`). Thin rods are made
-/// of rings of vertices instead, if nothing but one size is asked for. If cells have first order, no distance
+/// if no mesh passes, keeps the first one or, of meshes that begin with constrained tetrahedra, the one with
+/// fewest findings. Where features thinner than the feature size make a refinement far too fine, tries
+/// constrained tetrahedra, then coarser repairs (`coarser_repairs`). Makes thin rods from rings of vertices
+/// instead of refining them, if nothing but one size is asked for. If cells have first order, no distance
 /// is asked for and a region's volume is off by more than 2%, makes a passing mesh again, nearer to the
 /// surfaces, at most twice and each time in at most half of the time that the time limit leaves. A refinement
 /// ends early at a bound on vertices, so that coarser repairs can be tried; these must lose no body, region,

@@ -53,9 +53,9 @@ class PolygonSoup {
   std::vector<RegionPoint> named_regions;  ///< points that give regions a name but do not decide which space
                                            ///< is solid
   std::vector<FacetHole> facet_holes;
-  TagNames tag_names;  ///< names that the file gives to its tags
-  std::optional<Tag>
-      region_tag;  ///< tag of regions whose boundary is mostly from this soup; by default their number
+  TagNames tag_names;             ///< names that the file gives to its tags
+  std::optional<Tag> region_tag;  ///< tag of regions whose boundary is mostly from this soup; none: a
+                                  ///< region's tag is its number
 
   /// Begins a facet; the polygons added next belong to it.
   void begin_facet(Tag tag = 0) { facets_.push_back({polygon_count(), tag}); }

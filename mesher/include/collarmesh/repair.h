@@ -36,8 +36,8 @@ struct RepairOptions {
   std::optional<double> target_size = {};
   std::vector<Tag> kept_patches = {}, kept_curves = {};  ///< tags of features that are never collapsed
   /// Maximum work before repair gives up, counted in pairs of facets near each other; a cut of an
-  /// intersecting pair counts 1000. Counting work instead of time makes the result the same on every machine.
-  /// `RepairMode::wrap` gets a quarter of this.
+  /// intersecting pair and an edge around a hole count 1000. Counting work instead of time makes the result
+  /// the same on every machine. `RepairMode::wrap` gets a quarter of this.
   std::size_t max_work = 200'000'000;
 };
 
@@ -84,7 +84,8 @@ struct RepairReport {
   RepairPlaces cut;              ///< pairs of facets that intersected
   RepairPlaces kept;             ///< places left unrepaired because creases there would become sharper
   RepairPlaces flakes;           ///< closed parts thinner than the tolerance, dropped; size: volume
-  std::size_t second_sides = 0;  ///< opposite copies dropped where the surface was double everywhere
+  std::size_t second_sides = 0;  ///< triangles dropped because the surface was double everywhere: each
+                                 ///< coincided with another one of opposite orientation
   RepairPlaces merged;           ///< triangles inside solids, which were removed; size: area
   RepairPlaces dropped;          ///< triangles of open sheets outside of all solids, removed; size:
                                  ///< share of the area of all facets
@@ -142,9 +143,10 @@ struct RepairedPlc {
       soups;  ///< the repaired soups that the complex was built from; empty without repairs
 };
 
-/// Returns `plc`, the complex of the soups, unless it has features below the tolerance: shorter curves,
-/// slits, or features that come closer to each other than this without meeting. In that case returns the
-/// complex of the repaired soups. If the features cannot be removed, returns `plc` with a warning.
+/// Returns `plc`, the complex of the soups, unless it has features below the tolerance: curves shorter than
+/// it, slits, or features that come closer to each other than the tolerance without meeting. In that case
+/// returns the complex of the repaired soups. If the features cannot be removed, returns `plc` with a
+/// warning.
 RepairedPlc remove_noise(Plc plc, std::span<const PolygonSoup> soups, const PlcOptions& options = {},
                          const RepairOptions& repair_options = {}, const Execution& execution = {});
 

@@ -70,11 +70,11 @@ void require_known_patches(const SplitOptions& options, const Plc& plc);
 /// tets into sectors. The first sector keeps the node; each other sector gets a copy. So cracks stay closed
 /// along their fronts, open at mouths on the boundary, and have a node for each sector at junctions. The same
 /// holds for mid-edge nodes. Triangles with all their corners on a front cannot open and stay as they are.
-/// Each side becomes a boundary: the one behind the triangles (at interfaces, the side of the region with the
-/// smaller index) keeps their tag, unless other triangles have it, too; the one in front gets a new tag.
-/// Their names are the patch's name with `_minus` and `_plus`. New nodes follow all others; tets keep their
-/// order; copies of faces and edges follow all others. Throws OptionError as `require_known_patches` does.
-/// Cost: linear, and n log n in the tets at split triangles.
+/// Each side becomes a boundary. The side behind the triangles (at interfaces, the side of the region with
+/// the smaller index) keeps their tag, unless other triangles have it, too; the side in front gets a new tag.
+/// The names of the sides are the patch's name with `_minus` and `_plus`. New nodes follow all others; tets
+/// keep their order; copies of faces and edges follow all others. Throws OptionError as
+/// `require_known_patches` does. Cost: linear, and n log n in the tets at split triangles.
 SplitReport split(TetMesh& mesh, const SplitOptions& options);
 
 }  // namespace collarmesh

@@ -13,7 +13,7 @@ namespace collarmesh {
 enum class BallReason : std::uint8_t {
   unknown,
   subsegment,       ///< protects a piece of a curve that must not be split
-  up_front,         ///< a collar ball, placed before the first vertex, as are all others of this run
+  up_front,         ///< a collar ball of a run that places all of them before the first vertex
   vertex_inserted,  ///< a collar ball: its crease vertex was inserted
   vertex_isolated,  ///< a collar ball: the cell of its crease vertex meets only features that contain the
                     ///< vertex

@@ -55,7 +55,7 @@ function place(where, show) {
   return element('a', { class: 'place', onclick: () => show(where) }, text);
 }
 
-// The certificate's names, by what they guarantee.
+// Texts for the page, each with the certificate's names of the guarantees that it describes.
 const guarantees = [
   ['Conformity: corners, edges and faces of the input are in the mesh',
     ['conforming', 'watertight', 'curve_cover', 'curve_distance', 'patch_area', 'patch_border', 'patch_distance', 'patch_manifold',
@@ -76,7 +76,7 @@ const guarantees = [
 
 const ofTriangles = ['triangle_angles', 'shell_orientation'], ofTets = ['region_volume', 'radius_edge', 'thin_angles', 'collar_cells'];
 
-// Does the run give the guarantees with these names?
+// Returns whether the run gives the guarantees with these names.
 function given(report, names) {
   return (report.options.order === 2 || !names.includes('mid_nodes')) &&
     (report.layers || !names.includes('layer_jacobian')) &&

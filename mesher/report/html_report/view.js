@@ -14,8 +14,9 @@ async function inflate(text) {
   return new Response(stream).arrayBuffer();
 }
 
-// Shapes: points 3 per point, relative to shown.centre; tets 4 per tet; patches 4 per face on a patch, three corners and
-// the number of its tag in shown.face_tags; region, marks (1 collar, 2 thin, 8 odd and 16 even layers) 1 per tet.
+// Reads a mesh. Shapes: points 3 per point, relative to shown.centre; tets 4 per tet; patches 4 per face on a patch, three
+// corners and the number of its tag in shown.face_tags; region, marks (1 collar, 2 thin, 8 odd and 16 even layers) 1 per
+// tet.
 async function readMesh(shown, text) {
   const data = await inflate(text), { points, tets, faces } = shown, end = 12 * points + 16 * tets + 16 * faces;
   const mesh = { points: new Float32Array(data, 0, 3 * points), tets: new Uint32Array(data, 12 * points, 4 * tets),
@@ -28,8 +29,8 @@ async function readMesh(shown, text) {
   return mesh;
 }
 
-// A step of the run: as a mesh, with the segments of its curves (two points each) and its collars' balls (a centre and a
-// radius each).
+// Reads a step of the run: a mesh with the segments of its curves (two points each) and its collars' balls (a centre and
+// a radius each).
 async function readStep(step) {
   const mesh = await readMesh(step, step.data), extras = await inflate(step.extras);
   mesh.lines = new Float32Array(extras, 0, 6 * step.segments);
@@ -120,7 +121,7 @@ const background = 0xf4f6f8;
 // A patch gets a label if at least this many of its pixels are visible in a small picture of this width.
 const leastPixels = 6, smallWidth = 240;
 
-// Neighbouring numbers get colours far apart: hues by the golden angle.
+// Returns a colour for a number. Neighbouring numbers get colours far apart: hues by the golden angle.
 function faceColour(number) {
   return new THREE.Color().setHSL((0.58 + 0.381966 * number) % 1, 0.45, [0.68, 0.58, 0.76][number % 3]);
 }
@@ -337,7 +338,7 @@ class View {
     return distance;
   }
 
-  // Are all points in the picture?
+  // Returns whether all points are in the picture.
   seesAll() {
     this.camera.updateMatrixWorld();
     const p = new THREE.Vector3();
@@ -348,7 +349,7 @@ class View {
     return true;
   }
 
-  // Which cells lie on the near side of the cut?
+  // Returns a function that tells whether a cell lies on the near side of the cut.
   kept() {
     const axis = 'xyz'.indexOf(document.getElementById('axis').value || '-');
     if (axis < 0) return () => true;

@@ -19,7 +19,7 @@ class GradedSize {
     double growth;  // growth per unit length
   };
 
-  /// Builds the hierarchy. Cost: O(n log n).
+  /// Builds a hierarchy of boxes around the sources. Cost: O(n log n).
   explicit GradedSize(std::vector<Source> sources);
 
   /// Returns the largest growth.

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double sizes_per_diagonal = 20;  // for the default size
 
-// Returns the predicted time in seconds. It is mostly proportional to the number of tets before coarsening;
+// Returns the predicted time in seconds. It grows a little faster than the number of tets before coarsening;
 // the coefficients are fitted (bench/predicted_elements.py).
 double seconds_for(double refined_tets, unsigned order) {
   constexpr double of_one = 4.6e-6, power = 1.19, of_second_order = 1.3;
@@ -43,7 +43,7 @@ void require_valid(const PipelineOptions& options, std::span<const double> sizes
   }
 }
 
-/// Predicts the mesh of a complex with regions. `options` contain the size.
+/// Predicts the mesh of a complex with regions. `size` is the one in `options` or, if that is 0, its default.
 Prediction predict_one(const prediction::Shape& shape, const PipelineOptions& options, double size) {
   const std::array models{prediction::Model(), prediction::model_of_refinement()};
   std::array<double, 2> tets{};

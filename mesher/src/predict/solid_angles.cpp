@@ -40,7 +40,8 @@ class Wheel {
       const Index a = t[i], b = t[(i + 1) % 3], apex = t[(i + 2) % 3];
       if (edge(a, b) != edge(from_, to_)) continue;
       const Vector w = plc_.points[apex] - plc_.points[from_];
-      // If the triangle passes the edge in the axis's direction, its normal points towards increasing angles.
+      // If the triangle's border follows the edge in the axis's direction, the triangle's normal points
+      // towards increasing angles.
       spokes_.push_back(
           {std::atan2(dot(w, v_), dot(w, u_)), plc_.patches[triangle.patch].regions[a == from_ ? 1 : 0]});
     }

@@ -85,7 +85,7 @@ class BackgroundMesh {
 
 namespace {
 
-/// The mesh of first order with its layers cut into tets.
+/// Returns the mesh in first order, with its layers cut into tets.
 TetMesh straight_tets(TetMesh mesh) {
   mesh.tet_mid_nodes.clear();
   mesh.face_mid_nodes.clear();
