@@ -31,8 +31,8 @@ inline double least_along_edge(const std::array<double, 3>& b) {
   return (b[0] * b[2] - b[1] * b[1]) / bend;
 }
 
-/// Returns the least Jacobian of a linear prism over all of its points; twice the volume if the Jacobian is
-/// constant.
+/// Returns the least Jacobian of a linear prism over all of its points or, if that is not positive, a lower
+/// bound that is not positive either. If the Jacobian is constant, it is twice the volume.
 inline double least_jacobian(const PrismCorners& p) {
   double least = INFINITY;
   for (unsigned corner = 0; corner < 3; ++corner)

@@ -127,13 +127,13 @@ class Triangulation {
   /// vertex; fills zone.created and zone.outer.
   Index insert(ConflictZone& zone);
 
-  /// Divides the triangulation into blocks of vertices, each with room for a number of insertions. Until the
-  /// blocks are joined, callers may only insert into blocks, and may only read data that no other block
-  /// changes: points; corners and spheres of cells with a vertex of the reader's own block; neighbours of
-  /// these cells across faces with such a vertex. `owners` gives the block of each vertex, below
-  /// `insertions.size()`, or
-  /// `no_owner`; it grows with new vertices, and must otherwise not change until the blocks are joined. The
-  /// result does not depend on the threads, nor on their timing.
+  /// Divides the triangulation into blocks of vertices. `insertions` gives for each block the number of
+  /// insertions that it gets memory for. Until the blocks are joined, callers may only insert into blocks,
+  /// and may only read data that no other block changes: points; corners and spheres of cells with a vertex
+  /// of the reader's own block; neighbours of these cells across faces with such a vertex. `owners` gives the
+  /// block of each vertex, below `insertions.size()`, or `no_owner`; it grows with new vertices, and must
+  /// otherwise not change until the blocks are joined. The result does not depend on the threads, nor on
+  /// their timing.
   std::vector<Block> divide(std::span<const Index> insertions, Owners& owners);
   /// Joins the blocks and numbers their vertices, block by block.
   Renumbering join(std::vector<Block>& blocks);

@@ -18,8 +18,8 @@ namespace collarmesh {
 /// flat, and large ones.
 ///
 /// State: with a vertex ratio, the shortest edge at every vertex. Invariant: after an insertion the queue
-/// contains every new cell that must be destroyed, and older cells that have become so. The loop reports
-/// insertions and takes candidates.
+/// contains every new cell that must be destroyed, and every older cell for which this has become true. The
+/// loop reports insertions and takes candidates.
 class CellQuality {
  public:
   /// Keeps all by reference.

@@ -17,10 +17,11 @@
 
 namespace collarmesh {
 
-/// The part that creates the collars: all of them before refinement, or each in the pass (paper, section 3.2
-/// and Procedures 3 and 4). A vertex ball is created when the vertex is inserted or, before that, when it is
-/// isolated and medial. The balls along a crease curve are created when all cells that it crosses outside its
-/// ends' balls are isolated with respect to it, or when one of its subsegments would be split.
+/// The part that creates the collars: all of them before refinement, or each in the pass, that is, while the
+/// loop refines (paper, section 3.2 and Procedures 3 and 4). A vertex ball is created when the vertex is
+/// inserted or, before that, when it is isolated and medial. The balls along a crease curve are created when
+/// it is isolated in all Voronoi cells that it crosses outside its ends' balls, or when one of its
+/// subsegments would be split.
 /// Invariant: the centre of every ball and every corner point of the collars is an unresolved point or a mesh
 /// vertex. Only this class adds balls to the system, and reports them to cells, surface and curves. The loop
 /// starts it, reports insertions and decides when curves get their balls; the parts that stitch ask it for
@@ -79,7 +80,7 @@ class CollarCreator {
   GapExplorer& gap_size();
   /// Returns the explorer of gap sizes; null if it was never used.
   const GapExplorer* gap_explorer() const { return gap_.get(); }
-  /// For tests: sets a function to call for every ball.
+  /// For tests: sets a function to call for every ball as soon as it is created.
   void observe(std::function<void(const CollarBall&)> observer) { observer_ = std::move(observer); }
 
  private:

@@ -39,8 +39,8 @@ bool CollarSurface::on_crease(Index vertex) const {
          (f.dimension == 1 && collars_.is_crease_curve(f.index));
 }
 
-// Returns whether a smooth patch may fold here, at a curve inside it: a tet between its two sides is then not
-// flat.
+// Returns whether a smooth patch may fold here, at a curve inside it. A tet with corners on both sides of a
+// fold is not flat.
 bool CollarSurface::at_fold(std::span<const Index> corners) const {
   return std::ranges::any_of(corners, [&](Index v) {
     if (mesh_.feature(v).dimension != 1) return false;
@@ -147,8 +147,8 @@ bool CollarSurface::far_from_patch(Index patch, const Point& p) const {
   return nearest == none;
 }
 
-// Returns whether an edge on a smooth patch, which forms a face with the ball's centre there, is farther from
-// the patch than the tolerance.
+// Returns whether a face between the ball's centre and an edge on a smooth patch, or an edge from the centre
+// to a vertex on the patch, is farther from the patch than the tolerance. Records the patch and the place.
 bool CollarSurface::bends(CollarTriangle& t) const {
   if (surface_.region(cell_of(t.face)) == 0) return false;
   const CollarBall& ball = collars_.balls()[t.ball];

@@ -43,9 +43,9 @@ class CollarSurface {
   /// Returns whether the book tet between two triangles of consecutive balls would be inverted, or its angle
   /// too large.
   bool poor_book(const CollarTriangle& t, const CollarTriangle& u, const std::array<Index, 2>& edge) const;
-  /// Returns whether an edge leads from one sheet of a smooth patch to another. Always false in balls smaller
-  /// than the distance tolerance. Precondition: the edge and the ball's centre form a face between two
-  /// regions.
+  /// Returns whether an edge leads from one sheet of a smooth patch to another. Always false for edges so
+  /// long that `largest_sagitta` permits more than the distance tolerance does. Precondition: the edge and
+  /// the ball's centre form a face between two regions.
   bool spans_sheets(const CollarBall& ball, Index a, Index b) const;
   /// Returns the point that repairs a triangle: its representation point, or the nearest point of an arc
   /// where a patch through the ball's centre meets the sphere. Returns nothing if there is none, or if it is

@@ -238,8 +238,8 @@ void SurfaceCheck::resolve(const TessellationPoint& p, Index patch, FaceId neare
     points_.add({.point = p.at, .feature = {2, patch}, .apart = apart}, vertex);
 }
 
-// Turns tessellation points of smooth patches that are farther than the tolerance from the patch's triangles
-// into unresolved points: only the farthest one at each triangle, because one insertion serves all its
+// Finds the tessellation points of smooth patches that are farther from the patch's restricted triangles than
+// the tolerance. Resolves only the farthest one at each triangle, because one insertion serves all its
 // neighbours.
 bool SurfaceCheck::resolve_distant_points(const std::vector<FaceId>& faces) {
   if (first_tessellation_point_.empty()) prepare_tessellation();
