@@ -42,7 +42,7 @@ struct CornerPoint {
   Index feature;
 };
 
-/// The bounds on the size of balls.
+/// The options of the placement of balls: bounds on their size, a seed, and callbacks.
 struct CollarOptions {
   /// Returns an upper bound on the radius of a ball at a place on a vertex or curve.
   std::function<double(const Feature&, const Point&)> size;
@@ -75,7 +75,7 @@ class CollarSystem {
                const CollarOptions& options);
 
   bool empty() const { return balls_.empty(); }
-  /// Returns the hierarchy of the features around which the balls lie. Precondition: the complex has creases.
+  /// Returns the hierarchy of the complex's features. Precondition: the complex has creases.
   const FeatureHierarchy& features() const {
     assert(features_);
     return *features_;

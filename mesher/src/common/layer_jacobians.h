@@ -69,7 +69,7 @@ inline double volume_of(const PyramidCorners& p) {
 }
 
 /// Returns the least Jacobian of a prism of second order at its corners, at the middles of its edges that
-/// rise, and at the integration points of degree five. `mid` as in LayerCells.
+/// rise, and at the integration points of degree five. `mid` has the order of LayerCells.
 double least_jacobian_at_points(const PrismCorners& corners, const std::array<Point, 9>& mid);
 /// Returns the least Jacobian of a pyramid of second order at the same kinds of points, except its apex.
 double least_jacobian_at_points(const PyramidCorners& corners, const std::array<Point, 8>& mid);

@@ -221,7 +221,7 @@ class Triangulation::Block {
   /// Inserts the zone's point. Precondition: the zone lies in this block. The vertex gets another number when
   /// blocks are joined.
   Index insert(ConflictZone& zone);
-  /// Finds the cells with a vertex of this block. Leaves no marks on them, because other blocks may have
+  /// Finds the cells at a vertex of this block. Leaves no marks on them, because other blocks may have
   /// vertices of these cells, too.
   void incident_cells(Index vertex, std::vector<Index>& cells) const;
 

@@ -24,7 +24,7 @@ constexpr std::size_t least_entries = 2048, vertices_per_entry = 64;
 constexpr std::size_t entries_per_insertion = 48, vertices_per_wait = 32;
 constexpr std::size_t vertices_per_block = 4000, most_blocks = 256, samples_per_block = 64;
 constexpr std::size_t most_insertions_of_a_round = std::size_t{1} << 18;
-// Each cut lies between these shares of a sample's points.
+// Each cut divides the points of a sample at a random share between these two.
 constexpr double first_share = 0.4, last_share = 0.6;
 
 bool of_cells(WorkQueue::Priority priority) {

@@ -148,8 +148,8 @@ Index CollarReview::ball_to_take_in(Index cell) {
   return none;
 }
 
-// Judges the triangles of these cells, and those that share an edge with faces that these cells have
-// replaced. Returns false when stopped.
+// Judges the triangles of these cells, and known triangles that share an edge with the border of these cells.
+// Returns false when stopped.
 bool CollarReview::judge_changed_triangles(const std::vector<Index>& cells) {
   for (const Index cell : cells) touched_[cell] = 1;
   std::size_t looked_at = 0;

@@ -35,9 +35,9 @@ class FacingSheets {
   /// Returns the point of a restricted triangle's patch that is beneath a vertex of the triangle on another
   /// sheet; nothing if no vertex faces the patch across a narrow gap.
   std::optional<Candidate> candidate_across(FaceId face);
-  /// Returns the parameter on a subsegment, which has this direction, nearest to a vertex that encroaches it
-  /// from across a gap; nothing if there is no gap between them. Precondition: the vertex is none of its
-  /// ends.
+  /// Returns the parameter of a subsegment's place nearest to a vertex that encroaches the subsegment from
+  /// across a gap; nothing if there is no gap between them. `along` is the direction of the subsegment.
+  /// Precondition: the vertex is none of its ends.
   std::optional<double> parameter_across(const Subsegment& s, const Vector& along, Index vertex) const;
 
   /// Records that these vertices face each other; the second one exists or is inserted next.

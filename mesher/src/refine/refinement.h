@@ -95,7 +95,8 @@ class Refinement {
   }
   bool check_gradation();
   bool check_collars();
-  /// Bounds the ratio in narrow cells when no other work is left. Returns whether there is more work now.
+  /// Bounds the radius-edge ratio in narrow cells when no other work is left. Returns whether there is more
+  /// work now.
   bool bound_narrow_cells();
   /// Returns whether a budget is spent, given a lower bound on the vertices to come.
   bool stopped(std::size_t planned_vertices = 0);

@@ -15,12 +15,12 @@ namespace collarmesh {
 /// splits; GradedSizes::cells_made, for the size at a new vertex; CollarCreator::target_size, for the radii
 /// of balls; coarsen/target_sizes.cpp and predict/vertex_counts.cpp, for the same sizes in other stages. A
 /// new kind of size must be added to each of them (doc/contributing.md); if it calls the user's code or is
-/// kept at vertices, BlockRefinement must not have rounds with it, as with `has_field`.
+/// kept at vertices, BlockRefinement must not run rounds with it, as with `has_field`.
 class Sizing {
  public:
   /// Target edge length per unit of a size given as a length; in other meshers' meshes the median edge
-  /// exceeds the size by more. Sizes given as numbers of elements, across a gap or on a circle, are used as
-  /// they are.
+  /// exceeds the size by more than this. Sizes given as numbers of elements, across a gap or on a circle, are
+  /// used as they are.
   static constexpr double edge_per_size = 1.08;
   /// If the mesh will be coarsened, cells may exceed the radius-edge bound in gaps narrower than this share
   /// of the target edge length: in wider gaps the bound costs little, and improves angles.

@@ -19,8 +19,8 @@ namespace collarmesh {
 namespace {
 
 constexpr unsigned most_rounds = 240;  // sheets of one patch near each other settle slowly
-// A cell may be flat but for rounding if six times its volume over its longest edge cubed is below this
-// value.
+// A cell may be flat except for rounding if six times its volume is at most this share of its longest edge
+// cubed.
 constexpr double rounded_volume = 1e-13;
 constexpr std::size_t seeds_per_closed_patch = 4, seeds_per_missed_patch = 8;
 
