@@ -53,7 +53,7 @@ double Flatness::shrunk(double radius, double tolerance, const Deviation& deviat
   return radius;
 }
 
-// Returns the largest distance of the part of a curve between two parameters from its chord.
+// Returns how far the part of a curve between two parameters deviates from its chord.
 double Flatness::off_chord(Index curve, double from, double to) const {
   const Point a = paths_.point(curve, from), b = paths_.point(curve, to);
   double largest = 0;
@@ -118,8 +118,8 @@ double Flatness::other_arcs(Index curve, double parameter, double reach) const {
   });
 }
 
-// Returns the distance, up to `reach`, to triangles of the patch that are not connected, inside the ball
-// B(centre, reach), to those with the given points (the same point twice at a vertex).
+// Returns the distance, up to `reach`, to triangles of the patch that no triangles inside the ball B(centre,
+// reach) connect to the triangles with the given points (the same point twice at a vertex).
 double Flatness::other_sheets(Index patch, const Point& centre, double reach,
                               const std::array<Index, 2>& points) const {
   struct Side {

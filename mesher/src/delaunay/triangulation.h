@@ -209,10 +209,10 @@ class Triangulation {
 
 /// A block of vertices. One thread may insert into it while others insert into other blocks.
 ///
-/// A zone lies in a block when all its vertices belong to it. An insertion then writes the zone's cells, the
-/// faces towards cells beyond its border, and marks of these cells. A cell beyond the border has three
-/// vertices of the block, so that no other block's zone borders on it: no thread reads or writes data that
-/// another one writes.
+/// A zone lies in a block when all vertices of the zone belong to the block. An insertion then writes the
+/// zone's cells, the faces towards cells beyond its border, and marks of these cells. A cell beyond the
+/// border has three vertices of the block, so that no other block's zone borders on it: no thread reads or
+/// writes data that another one writes.
 class Triangulation::Block {
  public:
   /// Finds all cells in conflict with p, as Triangulation::find_conflict_zone does. Returns false if the zone

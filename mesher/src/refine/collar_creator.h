@@ -59,8 +59,8 @@ class CollarCreator {
   bool waits_for_ball(Index point) const {
     return placement_ && collars_.is_crease_vertex(point) && collars_.ball_at_vertex(point) == none;
   }
-  /// Creates the ball of a vertex (paper, Procedure 4). `near` is the mesh vertex whose cell contains the
-  /// vertex. Precondition: the vertex waits for its ball.
+  /// Creates the ball of a vertex (paper, Procedure 4). `near` is the mesh vertex whose Voronoi cell contains
+  /// the vertex. Precondition: the vertex waits for its ball.
   void create_at_vertex(Index vertex, Index near, BallReason reason);
   /// Looks for crease vertices or curves that have become isolated. Creates the balls of vertices at once;
   /// those of curves are created by `create_on_isolated_curves`. Precondition: the new cells were reported to

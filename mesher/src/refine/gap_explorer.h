@@ -75,10 +75,11 @@ class GapExplorer final : public GapSize {
   double squared_distance_to(const std::array<Index, 3>& points, const Point& x) const {
     return squared_distance_to_triangle(x, points_[points[0]], points_[points[1]], points_[points[2]]);
   }
-  /// Returns whether a witness has a part in this cell, whose neighbours are adjacent_, that does not lie
-  /// wholly in one of these balls.
+  /// Returns whether a witness has a part in this Voronoi cell that does not lie wholly in one of these
+  /// balls. Precondition: adjacent_ are the neighbours of the cell's vertex.
   bool reaches_into(Index cell, const std::array<Index, 3>& points, std::span<const CollarBall> except);
-  /// Writes the part of a triangle in the cell of this vertex, whose neighbours are adjacent_, to polygon_.
+  /// Sets polygon_ to the part of a triangle in the Voronoi cell of this vertex. Precondition: adjacent_ are
+  /// the vertex's neighbours.
   void cut_to_cell(Index vertex, const Point& a, const Point& b, const Point& c);
 
   const Plc& plc_;
