@@ -22,16 +22,18 @@ constexpr double radius_per_gap = 1 / gap_per_radius;
 constexpr double gap_per_size = 4;
 // Radii are shrunk by a random share, at most this one, so that spheres are in general position.
 constexpr double largest_shrinkage = 0.02;
-// Radii change along a curve by at most this share of the distance: a ball's radius is at most a third of a
-// distance, which changes no faster than the position along the curve. Where flatness limits radii they
-// change far less, so that they are even along rims of constant curvature.
+// Radii change along a curve by at most this share of the distance along it, because a radius is at most a
+// third of the gap size, which changes no faster than the position.
 constexpr double radius_slope = 1.0 / 3;
+// The same share where flatness limits the radii: smaller, so that radii are even along rims of constant
+// curvature.
 constexpr double flat_radius_slope = 0.05;
 constexpr double sample_step = 0.5;  // distance of samples, in radii
-// Consecutive centres are at most this many radii apart. The circle of two balls then subtends less than 90
-// degrees at both centres, d^2 <= r1^2 + r2^2, even after shrinking.
+// Consecutive centres are at most this many radii apart. Then d^2 <= r1^2 + r2^2, even after shrinking: the
+// lines from a point of the two balls' circle to their centres meet at an angle of at most 90 degrees.
 constexpr double step_per_radius = 1.2;
-// Equal steps whose sum exceeds 1.2 radii are at least this long, in radii.
+// Mesh vertices nearer than this, in radii, to the previous centre or to the last one do not become centres.
+// Equal steps whose sum exceeds 1.2 radii are not shorter either.
 constexpr double least_step_per_radius = step_per_radius / 2;
 
 // Lowers values until none exceeds a neighbour's by more than the slope allows, in both directions; goes
@@ -168,8 +170,8 @@ double CollarPlacement::Profile::step(double parameter) const {
   return interpolated(parameters, steps, parameter);
 }
 
-// Returns places from the first sample to the last: all vertices, and between them places that are equally
-// far apart, measured in radii.
+// Returns places from the first sample to the last: the vertices that are not too near to others, and between
+// them places that are equally far apart, measured in radii.
 std::vector<PlaceOnCurve> CollarPlacement::centres(Index curve, const Profile& profile,
                                                    std::span<const PlaceOnCurve> vertices) const {
   const double total = profile.steps.back();

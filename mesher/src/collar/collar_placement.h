@@ -21,8 +21,8 @@ class CollarPlacement {
   bool place_all();
   /// Places the ball at a vertex. Precondition: the vertex belongs to a crease and has no ball yet.
   void place_at_vertex(Index vertex);
-  /// Places the balls on a curve. They are centred on `vertices`, places of mesh vertices on the curve in
-  /// their order, so that no centre lies just beside a vertex; vertices too near to others are skipped.
+  /// Places the balls on a curve. They are centred on `vertices`, places of mesh vertices in their order
+  /// along the curve, so that no centre lies just beside a vertex. Vertices too near to others are skipped.
   /// Preconditions: the curve is a crease and has no balls yet, and the vertices at its ends have their
   /// balls.
   void place_on_curve(Index curve, std::span<const PlaceOnCurve> vertices = {});

@@ -31,7 +31,7 @@ struct CollarBall {
 struct CollarLink {
   std::array<Index, 2> balls;
   Index curve;
-  std::array<double, 2> parameters;  ///< positions of the two centres on the curve, arc length
+  std::array<double, 2> parameters;  ///< arc lengths along the curve at the two centres
 };
 
 /// A point that the mesh must have for the collar surface to follow the features: where a patch meets a
@@ -42,7 +42,7 @@ struct CornerPoint {
   Index feature;
 };
 
-/// The bounds on the size of balls.
+/// The options of the placement of balls: bounds on their size, a seed, and callbacks.
 struct CollarOptions {
   /// Returns an upper bound on the radius of a ball at a place on a vertex or curve.
   std::function<double(const Feature&, const Point&)> size;
@@ -52,8 +52,8 @@ struct CollarOptions {
   /// Called from time to time with a lower bound on the final number of balls; if it returns true, the system
   /// stays incomplete. May be empty.
   std::function<bool(std::size_t balls)> stopped = {};
-  /// Returns whether features within this radius of a place are too near to each other to be told apart. May
-  /// be empty.
+  /// Returns whether a ball of this radius at a place is too small, because features there are too near to
+  /// each other. May be empty.
   std::function<bool(const Point&, double)> too_small = {};
   /// Converts a place to input coordinates, for messages. May be empty.
   std::function<Point(const Point&)> outside = {};
@@ -69,13 +69,13 @@ class CollarSystem {
   CollarSystem(const Plc& plc, std::span<const Point> points, std::span<const Crease> creases);
   /// Places balls on all creases: radius a third of the gap size, never more than the size allows, shrunk by
   /// up to 2% (seeded) so that spheres are in general position. On smooth curves and patches the balls are so
-  /// small that the cells inside them stay within the distance. Throws PlcError where a ball would be smaller
-  /// than the smallest radius. Cost: O((n + b) log n) for n elements of the complex and b balls.
+  /// small that the cells inside them stay within `options.tolerance`. Throws PlcError where a ball would be
+  /// too small (`too_small`). Cost: O((n + b) log n) for n elements of the complex and b balls.
   CollarSystem(const Plc& plc, std::span<const Point> points, std::span<const Crease> creases,
                const CollarOptions& options);
 
   bool empty() const { return balls_.empty(); }
-  /// Returns the hierarchy of the features around which the balls lie. Precondition: the complex has creases.
+  /// Returns the hierarchy of the complex's features. Precondition: the complex has creases.
   const FeatureHierarchy& features() const {
     assert(features_);
     return *features_;

@@ -24,8 +24,8 @@ class CreaseSheets {
   /// Returns the sheets at a segment of a crease curve, given by its two points; their directions are
   /// orthogonal to the segment.
   std::vector<Sheet> at_segment(const std::array<Index, 2>& ends) const;
-  /// Returns the sheets at a crease vertex: their directions lead to places on the opposite side of each
-  /// triangle of smooth patches there.
+  /// Returns the sheets at a crease vertex: for each triangle of a smooth patch there, the directions to five
+  /// places on the side opposite the vertex.
   std::vector<Sheet> at_vertex(Index vertex) const;
 
  private:

@@ -40,8 +40,8 @@ class FeatureHierarchy {
   template <class Counts>
   double distance_to_features(const Point& p, double bound, const Counts& counts) const;
 
-  /// Returns the distance from p to the nearest element of the feature that `counts` accepts; if none is
-  /// nearer than `bound`, returns `bound`, and `nearest` is none.
+  /// Returns the distance from p to the nearest of the feature's elements that `counts` accepts. If none of
+  /// them is nearer than `bound`, returns `bound`, and `nearest` is none.
   template <class Counts>
   double distance_within(Feature feature, const Point& p, double bound, Index& nearest,
                          const Counts& counts) const;
@@ -58,7 +58,7 @@ class FeatureHierarchy {
   /// Adds a tree over these items. Returns its root.
   Index build(std::span<Index> items, std::span<const Box> boxes);
   double squared_distance_to(const Point& p, Index element) const;
-  /// Visits leaves, nearest first; `leaf(index, bound)` lowers the bound.
+  /// Visits leaves, nearest first; `leaf(index)` may lower the bound.
   template <class Leaf>
   void descend(Index root, const Point& p, double& squared_bound, const Leaf& leaf) const;
 

@@ -15,7 +15,7 @@ namespace {
 // as a share of the radius. The latter lets a polyline turn by 30 degrees at one point.
 constexpr double deviation_per_distance = 0.5;
 constexpr double deviation_per_radius = 0.14;
-// A ball on a closed curve or a loop covers at most this share of its length.
+// The radius of a ball on a curve that is not straight is at most this share of the curve's length.
 constexpr double radius_per_length = 1.0 / 8;
 // Another piece of a feature counts like a feature that does not contain the centre: radii are at most a
 // third of the distance to it. A point of a curve is on another piece if its distance along the curve exceeds
@@ -53,7 +53,7 @@ double Flatness::shrunk(double radius, double tolerance, const Deviation& deviat
   return radius;
 }
 
-// Returns the largest distance of the part of a curve between two parameters from its chord.
+// Returns how far the part of a curve between two parameters deviates from its chord.
 double Flatness::off_chord(Index curve, double from, double to) const {
   const Point a = paths_.point(curve, from), b = paths_.point(curve, to);
   double largest = 0;
@@ -63,14 +63,14 @@ double Flatness::off_chord(Index curve, double from, double to) const {
   return std::sqrt(largest);
 }
 
-// Returns the distance of a patch from the chord between the centre and the patch's point in the direction of
-// a sheet.
+// Returns how far the chord of a sheet deviates from its patch. The chord leads from the centre to the
+// patch's point nearest to the place at `radius` in the sheet's direction.
 double Flatness::off_patch(const Sheet& sheet, const Point& centre, double radius) const {
   return off_spoke(sheet.patch, centre,
                    features_.nearest_point({2, sheet.patch}, centre + radius * sheet.direction));
 }
 
-// Returns the distance of the patch from the edge between the centre and a point of the patch.
+// Returns how far the edge between the centre and a point of the patch deviates from the patch.
 double Flatness::off_spoke(Index patch, const Point& centre, const Point& end) const {
   double largest = 0;
   for (const double share : chord_shares) {
@@ -80,8 +80,8 @@ double Flatness::off_spoke(Index patch, const Point& centre, const Point& end) c
   return largest;
 }
 
-// Returns the distance of the patch from the edges to points where it meets the sphere: at most `most_spokes`
-// points at which sides of its triangles leave the ball.
+// Returns how far edges from the centre to the sphere deviate from the patch. They end at up to `most_spokes`
+// points where sides of the patch's triangles leave the ball.
 double Flatness::off_arc(Index patch, const Point& centre, double radius) const {
   Box box;
   box.add(centre - radius * Vector{1, 1, 1});
@@ -118,8 +118,8 @@ double Flatness::other_arcs(Index curve, double parameter, double reach) const {
   });
 }
 
-// Returns the distance, up to `reach`, to triangles of the patch that are not connected, inside the ball
-// B(centre, reach), to those with the given points (the same point twice at a vertex).
+// Returns the distance, up to `reach`, to triangles of the patch that no triangles inside the ball B(centre,
+// reach) connect to the triangles with the given points (the same point twice at a vertex).
 double Flatness::other_sheets(Index patch, const Point& centre, double reach,
                               const std::array<Index, 2>& points) const {
   struct Side {

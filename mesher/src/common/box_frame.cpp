@@ -15,7 +15,8 @@ void for_each_edge(std::span<const Point> points, Triangles triangles, const Vis
 }
 
 /// Returns the main direction of the edges; if `across` is not zero, of their parts orthogonal to this unit
-/// vector. Starts with the longest edge and moves towards the directions of the others with each step.
+/// vector. Starts with the direction of the longest edge; each step turns it towards the directions of the
+/// other edges.
 Vector main_direction(std::span<const Point> points, Triangles triangles, const Vector& across) {
   constexpr unsigned steps = 3;
   const auto part_of = [&](const Vector& edge) { return edge - dot(edge, across) * across; };

@@ -36,7 +36,7 @@ class BoxTree {
  private:
   struct Bounds {
     Box box;
-    Index group = none;  // group of all items, none if they differ
+    Index group = none;  // group of all items; none if their groups differ
   };
   static constexpr Index leaf_size = 4;
 

@@ -17,8 +17,8 @@ inline constexpr std::size_t most_nodes_of_cell = 15;
 
 /// Positions of the ends of an edge among the corners of its cell.
 using EdgePlaces = std::array<std::uint8_t, 2>;
-/// Positions of the corners of a side among the corners of its cell, counterclockwise as seen from outside;
-/// three for a triangle.
+/// Positions of the corners of a side among the corners of its cell, counterclockwise as seen from outside. A
+/// triangle has three.
 struct SidePlaces {
   std::size_t corners;
   std::array<std::uint8_t, 4> places;

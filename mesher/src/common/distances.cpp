@@ -6,7 +6,7 @@ namespace collarmesh {
 
 namespace {
 
-// Height over longest side below which a triangle is a needle, squared.
+// Square of the ratio of height to longest side below which a triangle is a needle.
 constexpr double squared_needle = 1e-12;
 
 }  // namespace

@@ -80,7 +80,7 @@ std::optional<Point> FlatFeatures::keep(unsigned dimension, Index feature, Point
   return std::nullopt;
 }
 
-// Moves a place back if it is too far from a straight curve. Returns whether it was.
+// Moves a place back if it is too far from a straight curve. Returns whether it moved the place.
 bool FlatFeatures::put_on_curve(Index curve, Point& p) const {
   if (curve_room_[curve] == infinite) return false;
   const Point q = nearest_on_chain(plc_.points, plc_.curves[curve].points, p);

@@ -51,7 +51,7 @@ class Hierarchy {
     return nodes_[leaf].first + nodes_[leaf].count;
   }
 
-  /// Adds a tree over the items from `first` on, at least one, whose root is the next node. Leaves have at
+  /// Adds a tree over `count` items, at least one, from `first` on. Its root is the next node. Leaves have at
   /// most `leaf_size` items. `split(first, count)` returns how many of these items go to the left child; it
   /// may reorder them. `leaf(first, count)` returns bounds of items, and `join(bounds, bounds)` those of two
   /// sets of items; both are converted to `Bounds`. Returns the bounds of all items.

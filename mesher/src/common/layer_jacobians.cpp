@@ -44,8 +44,8 @@ Derivatives<n> slopes_of(const std::array<Dual, n>& functions) {
   return derivatives;
 }
 
-/// Differentiates the shape functions of the 15-node serendipity prism: barycentric coordinates across, z
-/// from -1 to 1 upwards.
+/// Differentiates the shape functions of the 15-node serendipity prism. Its coordinates are barycentric in
+/// triangles, and z goes up from -1 to 1.
 Derivatives<15> prism_slopes(double x, double y, double z) {
   const Dual second{x, {1, 0, 0}}, third{y, {0, 1, 0}}, up{z, {0, 0, 1}};
   const std::array<Dual, 3> l{1 - (second + third), second, third};
@@ -63,8 +63,8 @@ Derivatives<15> prism_slopes(double x, double y, double z) {
   return slopes_of(n);
 }
 
-/// Differentiates the rational shape functions of the 13-node pyramid (Bedrosian 1992): base from -1 to 1,
-/// apex at z = 1.
+/// Differentiates the rational shape functions of the 13-node pyramid (Bedrosian 1992). On its base x and y
+/// go from -1 to 1; its apex is at z = 1.
 Derivatives<13> pyramid_slopes(double x, double y, double z) {
   const Dual u{x, {1, 0, 0}}, v{y, {0, 1, 0}}, w{z, {0, 0, 1}};
   const Dual room = 1 - w, quotient = (u * v * w) / room;
@@ -86,7 +86,7 @@ Derivatives<13> pyramid_slopes(double x, double y, double z) {
 
 constexpr double gauss = 0.7745966692414834;  // the square root of 0.6
 
-/// Corners and integration points of a triangle, of degree five (Radon).
+/// Corners of a triangle, and its integration points of degree five (Radon).
 constexpr std::array<std::array<double, 2>, 10> places_across{{{0, 0},
                                                                {1, 0},
                                                                {0, 1},

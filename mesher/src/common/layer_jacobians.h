@@ -31,8 +31,8 @@ inline double least_along_edge(const std::array<double, 3>& b) {
   return (b[0] * b[2] - b[1] * b[1]) / bend;
 }
 
-/// Returns the least Jacobian of a linear prism over all of its points; twice the volume if the Jacobian is
-/// constant.
+/// Returns the least Jacobian of a linear prism over all of its points or, if that is not positive, a lower
+/// bound that is not positive either. If the Jacobian is constant, it is twice the volume.
 inline double least_jacobian(const PrismCorners& p) {
   double least = INFINITY;
   for (unsigned corner = 0; corner < 3; ++corner)
@@ -69,7 +69,7 @@ inline double volume_of(const PyramidCorners& p) {
 }
 
 /// Returns the least Jacobian of a prism of second order at its corners, at the middles of its edges that
-/// rise, and at the integration points of degree five. `mid` as in LayerCells.
+/// rise, and at the integration points of degree five. `mid` has the order of LayerCells.
 double least_jacobian_at_points(const PrismCorners& corners, const std::array<Point, 9>& mid);
 /// Returns the least Jacobian of a pyramid of second order at the same kinds of points, except its apex.
 double least_jacobian_at_points(const PyramidCorners& corners, const std::array<Point, 8>& mid);

@@ -179,7 +179,7 @@ TetMesh tets_of_layers(const TetMesh& mesh) {
 
 namespace {
 
-/// A search for the points of walls below those of layers.
+/// A search for the wall's point below each point of the layers.
 class WallSearch {
  public:
   explicit WallSearch(const TetMesh& mesh) : mesh_(mesh), below_(mesh.points.size(), none) {}
@@ -217,7 +217,7 @@ class WallSearch {
     }
   }
 
-  /// Forgets the walls of cells that do not lie above one listed triangle.
+  /// Forgets the wall points of cells that do not lie above one listed triangle.
   void keep_those_on_listed_faces() {
     for (const auto& face : mesh_.faces) listed_.push_back(sorted(face));
     std::ranges::sort(listed_);

@@ -9,8 +9,8 @@
 
 namespace collarmesh {
 
-/// Returns the tags of the features of a dimension that a text names, either by their name or by a number:
-/// "7", and for patches also "patch_7" and "Face7".
+/// Returns the tags of the features of a dimension that have this text as their name. If there are none, the
+/// text may be a number: "7", and for patches also "patch_7" and "Face7".
 std::set<Tag> tags_named(const std::string& text, std::size_t dimension, const TagNames& names);
 
 /// Returns these tags of patches with their names, for a message; only the first ones if they are many.

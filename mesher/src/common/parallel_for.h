@@ -46,8 +46,8 @@ void parallel_for_ranges(std::size_t count, std::size_t length, const Work& work
                [&](std::size_t i) { work(i * length, std::min((i + 1) * length, count)); }, place);
 }
 
-/// Calls `work(i)` for all i below `count`, like `parallel_for`, if each call takes little time: a thread
-/// makes thousands of calls at once.
+/// Calls `work(i)` for all i below `count`, like `parallel_for`, but each thread takes thousands of calls at
+/// a time. For calls that take little time.
 template <class Work>
 void parallel_for_in_chunks(std::size_t count, const Work& work,
                             const recorded_costs::Place& place = {__builtin_FILE(), __builtin_LINE()}) {

@@ -28,7 +28,7 @@ class PatchDistance {
     double tolerance;  ///< tolerance at the sample
   };
 
-  /// Keeps references to all arguments except spans, whose contents it copies. `patch_points` as in
+  /// Keeps references to all arguments, and to the contents of the spans. `patch_points` are sorted, as in
   /// PatchPoints.
   PatchDistance(const TetMesh& mesh, const Plc& plc, const SurfaceTolerance& tolerance, Index patch,
                 std::span<const Index> faces, std::span<const Index> patch_points)

@@ -18,7 +18,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Flushes a file or a folder. Two error numbers mean that the file system cannot flush.
+/// Flushes a file or a folder. Returns whether this succeeded or the file system cannot flush (EINVAL,
+/// ENOTSUP).
 bool flushed(const fs::path& path) {
   const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (file < 0) return false;
@@ -61,7 +62,7 @@ const Replacement::Move* Replacement::carry_out() {
     const bool kept = move.kept.empty() || keep(move.to, move.kept);
     if (kept) ++done_;
     if (kept && rename(move.from.c_str(), move.to.c_str()) == 0) continue;
-    if (kept && move.kept.empty()) --done_;  // nothing of ours is there, so undo() must not remove what is
+    if (kept && move.kept.empty()) --done_;  // the file there is not ours, so undo() must not remove it
     return &move;
   }
   return nullptr;

@@ -7,7 +7,7 @@
 namespace collarmesh {
 
 /// The replacement of files by complete ones from temporary places on the same disk: either all are replaced,
-/// or none. Whoever uses it removes the temporary files, also those that remain after a failure.
+/// or none. The caller removes the temporary files, also those that remain after a failure.
 class Replacement {
  public:
   struct Move {
@@ -19,8 +19,8 @@ class Replacement {
   Replacement() = default;
   explicit Replacement(std::vector<Move> moves) : moves_(std::move(moves)) {}
 
-  /// Gives each file the mode and, where permitted, the owner of the file that it replaces, and flushes it to
-  /// the disk. Throws WriteError.
+  /// Gives each new file the mode and, where permitted, the owner of the file that it replaces, and flushes
+  /// it to the disk. Throws WriteError.
   void prepare() const;
   /// Moves the files to their places; returns null. If a move fails, returns it, with the reason in `errno`;
   /// then the moves before it have to be undone. Allocates nothing.

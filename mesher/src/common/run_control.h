@@ -30,7 +30,8 @@ class RunControl {
   /// Reports the progress of the only stage as that of the whole run.
   void begin_only_stage() { to_ = 1; }
 
-  /// Runs a stage that does not report whether its progress function ended it early. Throws Ended if it did.
+  /// Runs a stage, and throws Ended if the progress function ended it early. For stages whose results do not
+  /// tell this.
   void watch(const std::function<void(const Execution&)>& stage);
 
   /// Throws Ended if the run is cancelled or out of time, or if `asked`.

@@ -83,7 +83,7 @@ class EdgesAtVertex {
   std::vector<Index> table_;  // hash table of the numbers of ends
 };
 
-/// The edges from a vertex to vertices with larger numbers, and whether the tets at it fit together.
+/// The edges from a vertex to vertices with larger numbers, and whether the tets at the vertex fit together.
 class FittingTetsAtVertex : public EdgesAtVertex {
  public:
   /// Finds the edges and checks the tets. `cells` as from `for_each_vertex_with_cells`. Precondition: no tet

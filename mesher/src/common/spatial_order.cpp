@@ -34,7 +34,8 @@ std::uint64_t place_in(const Box& bounds, double scale, const Point& p) {
 
 void put_in_order(std::span<SpatialKey> keys, std::span<const Point> points);
 
-// Sorts items that share a cell in the order of the curve through cells of their own box.
+// Sorts items by their places. Items that share a cell are then sorted along the curve through the cells of
+// their own box.
 void sort_by_places(std::span<SpatialKey> keys, std::span<const Point> points) {
   boost::sort::spreadsort::integer_sort(
       keys.begin(), keys.end(), [](const SpatialKey& key, unsigned shift) { return key.place >> shift; },
@@ -96,7 +97,7 @@ std::vector<SpatialKey> spatial_order(std::span<const Point> points) {
   return keys;
 }
 
-// Sorts by the cells of the highest bits first, then within each of these cells.
+// Sorts by the highest bits of the places first, that is, by large cells, then within each of these cells.
 std::vector<SpatialKey> spatial_order_by_all_threads(std::span<const Point> points) {
   constexpr std::size_t many = 32768;
   if (points.size() < many) return spatial_order(points);

@@ -8,8 +8,8 @@
 
 namespace collarmesh {
 
-/// A limit on threads: the parallel parts of work that it runs use at most this many, and never more than
-/// there are cores; 0: all cores, or as many threads as the system allows.
+/// A limit on the threads of parallel parts: the work that `run` calls uses at most this number, and never
+/// more than there are cores. 0 stands for all cores, or as many threads as the system allows.
 class ThreadLimit {
  public:
   explicit ThreadLimit(unsigned threads)

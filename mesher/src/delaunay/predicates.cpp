@@ -49,8 +49,8 @@ Point circumcentre_exact(const Point& a, const Point& b, const Point& c, const P
 }
 
 int cross_product_sign_exact(const Point& p, const Point& q, const Point& a, const Point& b) {
-  // Each product of rounded differences is off by at most three roundings, and their difference by one more.
-  // Below the smallest sum, products may lose bits to underflow.
+  // Each product of rounded differences is off by at most three roundings, and the difference of two products
+  // by one more. Below the smallest sum, products may lose bits to underflow.
   constexpr double roundings = 1e-15, smallest_sum = 1e-280;
   const Vector u = q - p, v = b - a;
   const std::array<double, 3> us{u.x, u.y, u.z}, vs{v.x, v.y, v.z};

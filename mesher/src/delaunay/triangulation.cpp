@@ -381,7 +381,7 @@ Renumbering Triangulation::join(std::vector<Block>& blocks) {
   return renumbering;
 }
 
-// At the block's border, this reads only the data of cells that no other block changes.
+// At the block's border, this reads only data that no other block changes.
 void Triangulation::Block::incident_cells(Index vertex, std::vector<Index>& cells) const {
   cells.assign(1, mesh_->vertices_[vertex].cell);
   IndexSet known;

@@ -127,13 +127,13 @@ class Triangulation {
   /// vertex; fills zone.created and zone.outer.
   Index insert(ConflictZone& zone);
 
-  /// Divides the triangulation into blocks of vertices, each with room for a number of insertions. Until the
-  /// blocks are joined, callers may only insert into blocks, and may only read data that no other block
-  /// changes: points; corners and spheres of cells with a vertex of the reader's own block; neighbours of
-  /// these cells across faces with such a vertex. `owners` gives the block of each vertex, below
-  /// `insertions.size()`, or
-  /// `no_owner`; it grows with new vertices, and must otherwise not change until the blocks are joined. The
-  /// result does not depend on the threads, nor on their timing.
+  /// Divides the triangulation into blocks of vertices. `insertions` gives for each block the number of
+  /// insertions that it gets memory for. Until the blocks are joined, callers may only insert into blocks,
+  /// and may only read data that no other block changes: points; corners and spheres of cells with a vertex
+  /// of the reader's own block; neighbours of these cells across faces with such a vertex. `owners` gives the
+  /// block of each vertex, below `insertions.size()`, or `no_owner`; it grows with new vertices, and must
+  /// otherwise not change until the blocks are joined. The result does not depend on the threads, nor on
+  /// their timing.
   std::vector<Block> divide(std::span<const Index> insertions, Owners& owners);
   /// Joins the blocks and numbers their vertices, block by block.
   Renumbering join(std::vector<Block>& blocks);
@@ -209,10 +209,10 @@ class Triangulation {
 
 /// A block of vertices. One thread may insert into it while others insert into other blocks.
 ///
-/// A zone lies in a block when all its vertices belong to it. An insertion then writes the zone's cells, the
-/// faces towards cells beyond its border, and marks of these cells. A cell beyond the border has three
-/// vertices of the block, so that no other block's zone borders on it: no thread reads or writes data that
-/// another one writes.
+/// A zone lies in a block when all vertices of the zone belong to the block. An insertion then writes the
+/// zone's cells, the faces towards cells beyond its border, and marks of these cells. A cell beyond the
+/// border has three vertices of the block, so that no other block's zone borders on it: no thread reads or
+/// writes data that another one writes.
 class Triangulation::Block {
  public:
   /// Finds all cells in conflict with p, as Triangulation::find_conflict_zone does. Returns false if the zone
@@ -221,7 +221,7 @@ class Triangulation::Block {
   /// Inserts the zone's point. Precondition: the zone lies in this block. The vertex gets another number when
   /// blocks are joined.
   Index insert(ConflictZone& zone);
-  /// Finds the cells with a vertex of this block. Leaves no marks on them, because other blocks may have
+  /// Finds the cells at a vertex of this block. Leaves no marks on them, because other blocks may have
   /// vertices of these cells, too.
   void incident_cells(Index vertex, std::vector<Index>& cells) const;
 

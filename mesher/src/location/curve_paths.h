@@ -23,8 +23,9 @@ class CurvePaths {
   double length(Index curve) const { return lengths_[curve].back(); }
   /// Returns the arc lengths of the polyline's points; the last entry is the whole length.
   const std::vector<double>& lengths(Index curve) const { return lengths_[curve]; }
-  /// Returns the index of the polyline's segment at a parameter, and the segment's two points.
+  /// Returns the index of the polyline's segment at a parameter.
   std::size_t segment(Index curve, double parameter) const;
+  /// Returns the two points of a segment of the polyline.
   std::array<Index, 2> segment_ends(Index curve, std::size_t segment) const;
   Point point(Index curve, double parameter) const;
 

@@ -10,8 +10,8 @@ namespace collarmesh {
 
 namespace {
 
-// Returns whether the box lies on one side of the triangle's plane. Conservative: the compared terms are off
-// by some 16 roundings of the sum of products, and the slack is a larger share of that sum.
+// Returns whether the box lies on one side of the triangle's plane. Conservative: rounding changes the
+// compared terms by some 16 * 2^-53 of the product of sums below, and the slack is 1e-14 of that product.
 bool misses_plane(const CentredBox& box, const std::array<Point, 3>& t) {
   const auto sum = [](const Vector& v) { return std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z); };
   const Vector u = t[1] - t[0], v = t[2] - t[0], n = cross(u, v), d = box.centre - t[0];

@@ -16,9 +16,9 @@
 
 namespace collarmesh {
 
-/// Bounding-volume hierarchy over triangles. A set of its nodes stands for the
-/// triangles below them: a mesh vertex carries the nodes that meet its Voronoi cell, coarse ones
-/// while the cell is large, so that neither memory nor queries grow with the input's resolution.
+/// Bounding-volume hierarchy over triangles. A set of its nodes stands for the triangles below them. A mesh
+/// vertex keeps the nodes that meet its Voronoi cell: coarse nodes while the cell is large, so that neither
+/// memory nor queries grow with the input's resolution.
 class TriangleHierarchy {
  public:
   /// A triangle that a segment crosses; `direction` is +1 if the segment goes from behind the triangle to its
@@ -74,7 +74,7 @@ class TriangleHierarchy {
     Index segment;
     Crossing crossing;
   };
-  /// Finds the crossings of all segments of a bundle, in their order.
+  /// Finds the crossings of all segments of a bundle, in the order of the segments.
   void crossings(const SegmentBundle& bundle, std::span<const Index> nodes,
                  std::vector<BundleCrossing>& found) const;
 

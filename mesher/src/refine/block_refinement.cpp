@@ -24,7 +24,7 @@ constexpr std::size_t least_entries = 2048, vertices_per_entry = 64;
 constexpr std::size_t entries_per_insertion = 48, vertices_per_wait = 32;
 constexpr std::size_t vertices_per_block = 4000, most_blocks = 256, samples_per_block = 64;
 constexpr std::size_t most_insertions_of_a_round = std::size_t{1} << 18;
-// Each cut lies between these shares of a sample's points.
+// Each cut divides the points of a sample at a random share between these two.
 constexpr double first_share = 0.4, last_share = 0.6;
 
 bool of_cells(WorkQueue::Priority priority) {
@@ -238,8 +238,8 @@ std::uint16_t BlockRefinement::owner_of(const WorkQueue::Entry& entry) const {
                                                                               : Triangulation::no_owner;
 }
 
-// Returns the number of insertions that each block has room for. Most insertions destroy several cells that
-// are in the queue.
+// Returns for each block the number of insertions that it gets memory for: a share of its entries, because
+// most insertions destroy several queued cells.
 std::vector<Index> BlockRefinement::room_for(
     const std::vector<std::vector<WorkQueue::Entry>>& entries) const {
   constexpr std::size_t entries_per_room = 5, least_room = 64;
@@ -286,8 +286,8 @@ void BlockRefinement::refine(Block block, const std::vector<WorkQueue::Entry>& e
   }
 }
 
-// Returns whether the round should go on: whether the queue has skinny cells of any size, or entries with
-// larger balls than the round's smallest, which the loop would take first.
+// Returns whether the round should go on: whether the block's queue has skinny cells, entries of priorities
+// before the round's, or entries of the round's priority in its bucket or in buckets of larger balls.
 bool BlockRefinement::any_left(WorkQueue& queue) const {
   const WorkQueue::Priority priority = queue.first_priority();
   if (priority == WorkQueue::skinny_cells) return true;
@@ -331,8 +331,8 @@ BlockRefinement::Fate BlockRefinement::destroy(const WorkQueue::Item& item, Bloc
   }
 }
 
-// Inserts a candidate. Returns false if the block has no room for it. If no vertex of the zone has nodes
-// (SurfaceNodes), the new cells get the region of the old ones.
+// Inserts a candidate. Returns false if the block has too few records for it. If no vertex of the zone has
+// nodes (SurfaceNodes), the new cells get the region of the old ones.
 bool BlockRefinement::insert(const Candidate& candidate, Block block, Worker& worker) {
   ConflictZone& zone = worker.zone;
   const bool quiet = std::ranges::none_of(zone.vertices, [&](Index v) { return nodes_.any_at(v); });

@@ -8,8 +8,8 @@
 namespace collarmesh {
 
 /// The time, memory and vertices that a refinement may use, and the caller's wish to continue. The loop
-/// checks it regularly. Only direct callers of `generate` pass a time limit: the pipeline, the program and
-/// the Python package watch the time of all stages themselves and cancel.
+/// checks the budget regularly. Only direct callers of `generate` pass a time limit: the pipeline, the
+/// program and the Python package watch the time of all stages themselves and cancel.
 class Budget {
  public:
   /// The resources in use.

@@ -9,10 +9,12 @@ namespace {
 
 // A centre is inserted with a pseudo-random offset of up to this share of its ball's radius.
 constexpr double tet_offset = 0.05;
-// A cell whose volume is below this share of its longest edge cubed is flat.
+// A cell is flat if six times its volume is below this share of the cube of the longest edge at its first
+// corner.
 constexpr double least_volume = 1e-11;
-// Largest number of cells at a new vertex for which narrow cells may exceed the ratio. A vertex between two
-// lines with m and n vertices may have m n cells; in a mesh with bounded ratios it has at most 60.
+// Largest number of cells at a new vertex for which narrow cells may exceed the radius-edge bound. A vertex
+// between two lines with m and n vertices may have m n cells; in a mesh with bounded ratios it has at most
+// 60.
 constexpr std::size_t most_narrow_cells = 80;
 
 struct Shape {

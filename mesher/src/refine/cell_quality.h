@@ -18,8 +18,8 @@ namespace collarmesh {
 /// flat, and large ones.
 ///
 /// State: with a vertex ratio, the shortest edge at every vertex. Invariant: after an insertion the queue
-/// contains every new cell that must be destroyed, and older cells that have become so. The loop reports
-/// insertions and takes candidates.
+/// contains every new cell that must be destroyed, and every older cell for which this has become true. The
+/// loop reports insertions and takes candidates.
 class CellQuality {
  public:
   /// Keeps all by reference.
@@ -56,11 +56,11 @@ class CellQuality {
   /// Judges the new cells. Precondition: these cells were reported to surface, collar cells and sizes.
   void cells_made(const ConflictZone& zone, Index vertex);
   /// Queues a cell if it must be destroyed. Several threads may call it at once, each with its own queue, if
-  /// there is no vertex ratio and no sizes come from the caller or are kept at vertices.
+  /// there is no vertex ratio, the caller gives no size field, and no sizes are kept at vertices.
   void judge(Index cell, WorkQueue& queue) const { judge(cell, queue, leaves_narrow_cells_); }
   /// Judges all cells: at the start, and when sizes have changed everywhere.
   void judge_all();
-  /// Makes narrow cells keep the bound on the ratio, too, from now on. Queues the cells that exceed it and
+  /// Makes narrow cells keep the radius-edge bound, too, from now on. Queues the cells that exceed it and
   /// returns whether there are any.
   bool bound_narrow_cells();
 

@@ -60,7 +60,7 @@ class CollarCells {
   GrowingArray<std::uint8_t> inside_, near_;     // flags by cell and by vertex; empty without balls
   std::unordered_map<Index, TakenIn> taken_in_;  // by cell
   std::vector<Index> balls_;                     // balls near the last vertex
-  Index last_vertex_ = none;                     // none if balls_ may lack balls near it
+  Index last_vertex_ = none;                     // none if balls_ may be incomplete
   std::vector<Index> cells_;                     // scratch
 };
 

@@ -56,8 +56,8 @@ void CollarCreator::cells_made(const ConflictZone& zone, Index vertex) {
   for (const Index v : zone.vertices) create_if_isolated(v);
 }
 
-// Places a ball if the cell contains exactly one crease vertex that is not in the mesh, and that vertex is
-// theta_0-medial and isolated (paper, appendix A).
+// Places a ball if the Voronoi cell of `at` contains exactly one vertex of the complex that is not in the
+// mesh, and this is a crease vertex that is theta_0-medial and isolated (paper, appendix A).
 void CollarCreator::create_if_isolated(Index at) {
   const Index only = points_.only_vertex_at(at);
   if (only == none || !waits_for_ball(only)) return;
@@ -76,8 +76,8 @@ void CollarCreator::create_at_vertex(Index vertex, Index near, BallReason reason
   take_up_balls(near, {none, none}, reason);
 }
 
-// Places balls on isolated curves. Every cell that a subsegment crosses is the cell of one of its ends,
-// because its protective ball is empty.
+// Places balls on isolated curves. Only the Voronoi cells of subsegments' ends are tested: a subsegment
+// crosses no others, because its protective ball is empty.
 void CollarCreator::create_on_isolated_curves() {
   while (open_creases_.any_touched()) {
     const Index curve = open_creases_.take_touched();
@@ -104,8 +104,8 @@ bool CollarCreator::is_isolated(Index curve) {
   return isolated == chain.links.size();
 }
 
-// Places a curve's balls instead of splitting its subsegment. The paper does not place balls where a crease
-// is not isolated yet.
+// Places a curve's balls instead of splitting its subsegment; in the paper's profile only if the curve is
+// isolated.
 bool CollarCreator::create_at_subsegment(Index subsegment) {
   const Index curve = curves_.curve_of(subsegment);
   if (!open_creases_.is_open(curve) || open_creases_.chain(curve).unresolved > 0) return false;
@@ -127,7 +127,7 @@ void CollarCreator::create_on_curve(Index curve, BallReason reason) {
   }));
   const OpenCreases::Chain chain = open_creases_.close(curve);
   isolated_.erase(curve);
-  // Centre balls on mesh vertices on closed curves only: on other curves this kept the repair of the collar
+  // On closed curves, balls are centred on mesh vertices. On other curves this kept the repair of the collar
   // surface from ending.
   std::vector<PlaceOnCurve> vertices;
   if (domain_.plc.curves[curve].closed) vertices = curves_.vertices_amid(curve);

@@ -17,10 +17,11 @@
 
 namespace collarmesh {
 
-/// The part that creates the collars: all of them before refinement, or each in the pass (paper, section 3.2
-/// and Procedures 3 and 4). A vertex ball is created when the vertex is inserted or, before that, when it is
-/// isolated and medial. The balls along a crease curve are created when all cells that it crosses outside its
-/// ends' balls are isolated with respect to it, or when one of its subsegments would be split.
+/// The part that creates the collars: all of them before refinement, or each in the pass, that is, while the
+/// loop refines (paper, section 3.2 and Procedures 3 and 4). A vertex ball is created when the vertex is
+/// inserted or, before that, when it is isolated and medial. The balls along a crease curve are created when
+/// it is isolated in all Voronoi cells that it crosses outside its ends' balls, or when one of its
+/// subsegments would be split.
 /// Invariant: the centre of every ball and every corner point of the collars is an unresolved point or a mesh
 /// vertex. Only this class adds balls to the system, and reports them to cells, surface and curves. The loop
 /// starts it, reports insertions and decides when curves get their balls; the parts that stitch ask it for
@@ -58,8 +59,8 @@ class CollarCreator {
   bool waits_for_ball(Index point) const {
     return placement_ && collars_.is_crease_vertex(point) && collars_.ball_at_vertex(point) == none;
   }
-  /// Creates the ball of a vertex (paper, Procedure 4). `near` is the mesh vertex whose cell contains the
-  /// vertex. Precondition: the vertex waits for its ball.
+  /// Creates the ball of a vertex (paper, Procedure 4). `near` is the mesh vertex whose Voronoi cell contains
+  /// the vertex. Precondition: the vertex waits for its ball.
   void create_at_vertex(Index vertex, Index near, BallReason reason);
   /// Looks for crease vertices or curves that have become isolated. Creates the balls of vertices at once;
   /// those of curves are created by `create_on_isolated_curves`. Precondition: the new cells were reported to
@@ -79,7 +80,7 @@ class CollarCreator {
   GapExplorer& gap_size();
   /// Returns the explorer of gap sizes; null if it was never used.
   const GapExplorer* gap_explorer() const { return gap_.get(); }
-  /// For tests: sets a function to call for every ball.
+  /// For tests: sets a function to call for every ball as soon as it is created.
   void observe(std::function<void(const CollarBall&)> observer) { observer_ = std::move(observer); }
 
  private:

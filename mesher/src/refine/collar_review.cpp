@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::size_t triangles_between_stops = 64;
 constexpr double on_sphere = 1e-6;
-// A cell whose volume is below this share of its longest edge cubed is flat.
+// A cell is flat if six times its volume is below this share of the cube of the longest edge at its first
+// corner.
 constexpr double flat_volume = 1e-7;
 
 // Visits the faces around an edge of a cell; all of them unless the edge lies on the hull.
@@ -147,8 +148,8 @@ Index CollarReview::ball_to_take_in(Index cell) {
   return none;
 }
 
-// Judges the triangles of these cells, and those that share an edge with faces that these cells have
-// replaced. Returns false when stopped.
+// Judges the triangles of these cells, and known triangles that share an edge with the border of these cells.
+// Returns false when stopped.
 bool CollarReview::judge_changed_triangles(const std::vector<Index>& cells) {
   for (const Index cell : cells) touched_[cell] = 1;
   std::size_t looked_at = 0;
@@ -199,9 +200,9 @@ const CollarTriangle* CollarReview::known_triangle(FaceId face) const {
   return triangles_.find(outer, mesh_.generation(cell_of(outer)));
 }
 
-// Judges an edge by its neighbours: every edge must have two triangles, of one ball or of consecutive ones,
-// and the book tet between the centres of consecutive balls must not be inverted and must keep the angle
-// bound.
+// Returns whether an edge is poor. It must have two triangles, of one ball or of consecutive balls. With one
+// ball, an edge between regions must not span two sheets. With two, the book tet between their centres must
+// not be inverted and must keep the angle bound.
 bool CollarReview::poor_edge(const CollarTriangle& t, Index a, Index b) const {
   const CollarTriangle* neighbour = nullptr;
   std::size_t count = 0;

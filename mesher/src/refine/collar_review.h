@@ -14,12 +14,13 @@ namespace collarmesh {
 /// The part that reviews the collar surface whenever all other work is done (paper, section 4), and queues
 /// its faults: poor triangles, and vertices of creases that are vertices of cells outside the collar.
 ///
-/// State: the known triangles of the collar surface since the last review. Invariant, once started: every
-/// cell near collars that was created since then, or whose vertices lie on other features, is touched. So a
-/// review only judges the triangles around touched cells, and triangles whose candidates it has handed out;
-/// the cost of all reviews together is proportional to the created cells and the candidates. The loop asks
-/// for reviews, takes candidates, and reports insertions and vertices that join features. A fault without a
-/// candidate is not reviewed again before its cells change: it stays, and the certificate reports it.
+/// State: the known triangles of the collar surface since the last review. Invariant, once started: a cell
+/// near collars is touched if it was created since the last review, or if one of its vertices has joined a
+/// feature since then. So a review only judges the triangles around touched cells, and triangles whose
+/// candidates it has handed out; the cost of all reviews together is proportional to the created cells and
+/// the candidates. The loop asks for reviews, takes candidates, and reports insertions and vertices that join
+/// features. A fault without a candidate is not reviewed again before its cells change: it stays, and the
+/// certificate reports it.
 class CollarReview {
  public:
   /// Keeps references to all arguments. Calls `stopped` now and then. The first review completes the system
@@ -82,7 +83,7 @@ class CollarReview {
                                         // touched
   CollarTriangles triangles_;
   std::vector<FaceId> poor_;                  // triangles to review, inside regions
-  std::unordered_map<Index, Index> ball_at_;  // by mesh vertex on a crease
+  std::unordered_map<Index, Index> ball_at_;  // by mesh vertex on a crease: a ball that contains it
   std::vector<Index> exposed_;                // exposed mesh vertices on creases, to review
   std::vector<Index> scratch_;
 };

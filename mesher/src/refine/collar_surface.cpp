@@ -39,8 +39,8 @@ bool CollarSurface::on_crease(Index vertex) const {
          (f.dimension == 1 && collars_.is_crease_curve(f.index));
 }
 
-// Returns whether a smooth patch may fold here, at a curve inside it: a tet between its two sides is then not
-// flat.
+// Returns whether a smooth patch may fold here, at a curve inside it. A tet with corners on both sides of a
+// fold is not flat.
 bool CollarSurface::at_fold(std::span<const Index> corners) const {
   return std::ranges::any_of(corners, [&](Index v) {
     if (mesh_.feature(v).dimension != 1) return false;
@@ -84,7 +84,7 @@ std::optional<CollarTriangle> CollarSurface::triangle(FaceId outer) {
     off_[cell_of(outer)] |= static_cast<std::uint8_t>(1U << corner_of(outer));
     return std::nullopt;
   }
-  // The part of the dual edge inside a ball, as parameters from p to q.
+  // The part of the dual edge inside a ball, in parameters that go from 0 at p to 1 at q.
   struct Part {
     double from, to;
     Index ball;
@@ -147,8 +147,8 @@ bool CollarSurface::far_from_patch(Index patch, const Point& p) const {
   return nearest == none;
 }
 
-// Returns whether an edge on a smooth patch, which forms a face with the ball's centre there, is farther from
-// the patch than the tolerance.
+// Returns whether a face between the ball's centre and an edge on a smooth patch, or an edge from the centre
+// to a vertex on the patch, is farther from the patch than the tolerance. Records the patch and the place.
 bool CollarSurface::bends(CollarTriangle& t) const {
   if (surface_.region(cell_of(t.face)) == 0) return false;
   const CollarBall& ball = collars_.balls()[t.ball];
@@ -158,8 +158,8 @@ bool CollarSurface::bends(CollarTriangle& t) const {
     for (unsigned k = 0; k < 3; ++k) {
       const Index i = v[k], j = v[(k + 1) % 3];
       if (mesh_.on_patch(i, patch)) {
-        // The edge to the centre. A point on the sphere divides it only if it is longer than the radius.
-        // Otherwise the new point would be right beside i.
+        // The edge to the centre. A point on the sphere divides this edge only if the edge is longer than the
+        // radius. Otherwise the new point would be right beside i.
         const Vector spoke = mesh_.point(i) - ball.centre;
         const bool divisible = norm(spoke) > divisible_spoke * ball.radius;
         for (const double share : {0.4, 0.65}) {
@@ -197,7 +197,7 @@ bool CollarSurface::spans_sheets(const CollarBall& ball, Index a, Index b) const
   return found;
 }
 
-// Returns a point near a given one where a patch through the ball's centre meets its sphere.
+// Returns a point near a given one where a patch through the ball's centre meets the ball's sphere.
 std::optional<Point> CollarSurface::arc_point(const CollarBall& ball, Index patch, const Point& near) const {
   const auto on_sphere_towards = [&](const Point& p) {
     const Vector d = p - ball.centre;
@@ -307,7 +307,7 @@ std::optional<Candidate> CollarSurface::repair(const CollarTriangle& t) const {
   return Candidate{best, radius * radius, t.representation, feature, start};
 }
 
-// Drops what is stored for faces whose cells have changed.
+// Forgets the flags of faces whose cells have changed.
 void CollarSurface::cells_made(const ConflictZone& zone) {
   if (off_.size() == 0) return;
   off_.resize(mesh_.cell_capacity(), 0);

@@ -12,7 +12,7 @@ namespace collarmesh {
 
 /// The collar surface as a restricted Delaunay triangulation (paper, section 4): the triangles between cells
 /// inside and outside the collars. Decides whether they represent the surface well enough to be stitched to
-/// the balls' centres; if not, finds the points that repair it, lower dimension first.
+/// the balls' centres; if not, finds the points that repair it, points of lower dimension first.
 /// State: the faces whose dual edges are known to meet no ball. CollarReview decides when to ask which
 /// triangles are poor; RipAndStitch takes all triangles. The loop reports insertions.
 class CollarSurface {
@@ -43,13 +43,13 @@ class CollarSurface {
   /// Returns whether the book tet between two triangles of consecutive balls would be inverted, or its angle
   /// too large.
   bool poor_book(const CollarTriangle& t, const CollarTriangle& u, const std::array<Index, 2>& edge) const;
-  /// Returns whether an edge leads from one sheet of a smooth patch to another. Always false in balls smaller
-  /// than the distance tolerance. Precondition: the edge and the ball's centre form a face between two
-  /// regions.
+  /// Returns whether an edge leads from one sheet of a smooth patch to another. Always false for edges so
+  /// long that `largest_sagitta` permits more than the distance tolerance does. Precondition: the edge and
+  /// the ball's centre form a face between two regions.
   bool spans_sheets(const CollarBall& ball, Index a, Index b) const;
   /// Returns the point that repairs a triangle: its representation point, or the nearest point of an arc
-  /// where a patch through the ball's centre meets the sphere. Returns nothing if there is none, or if it is
-  /// close to a mesh vertex already; so the number of repairs of a ball is bounded (theory.md).
+  /// where a patch through the ball's centre meets the sphere. Returns nothing if there is no such point, or
+  /// if it is close to a mesh vertex already; so the number of repairs of a ball is bounded (theory.md).
   std::optional<Candidate> repair(const CollarTriangle& t) const;
 
   /// Returns whether a mesh vertex lies on a crease.

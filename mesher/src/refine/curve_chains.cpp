@@ -16,10 +16,10 @@ namespace {
 // A curve gets inner seeds if its length exceeds its chord by this factor, because its first ball would not
 // cover it.
 constexpr double seeded_length_per_chord = 1.2;
-// Subsegments are split at a distance of at most this share of their radius from their centre.
+// A subsegment is split at most this share of its ball's radius away from the ball's centre.
 constexpr double subsegment_offset = 0.1;
-// Least length of the rest of a subsegment beyond the ball at its end, relative to the ball's radius, unless
-// a vertex is there already.
+// When a ball cuts off the end of a curve, the first subsegment beyond the ball gets at least this length, in
+// radii of the ball, unless it ends at a mesh vertex or at the other end of the chain.
 constexpr double least_clipped_length = 0.3;
 
 }  // namespace
@@ -108,8 +108,9 @@ void CurveChains::point_resolved(Index point) {
   if (!points_[point].dormant && open_creases_.note_resolved(curve)) chain_resolved(curve, piece);
 }
 
-// Requests the balls of a crease whose chain was split and is resolved: queues a piece, whose split creates
-// them instead. In the paper's profile they must wait until the crease is isolated, so only marks the crease.
+// Requests the balls of a crease whose chain was split and is resolved: queues a piece, because an attempt to
+// split it creates the balls. In the paper's profile the balls must wait until the crease is isolated, so
+// only marks the crease.
 void CurveChains::chain_resolved(Index curve, Index piece) {
   if (domain_.is_papers())
     open_creases_.touch(curve);
@@ -323,7 +324,7 @@ std::optional<CurveChains::Split> CurveChains::split_of(Index subsegment) {
   const auto across = is_end(chained, nearest) ? std::nullopt
                                                : facing_sheets_.parameter_across(
                                                      s, place(chained, 1) - place(chained, 0), nearest);
-  // Split a little beside the centre: otherwise halves of symmetric curves would be cocircular.
+  // Split a little beside the centre: otherwise vertices of symmetric curves would be cocircular.
   const double parameter =
       across ? *across
              : s.centre_parameter + subsegment_offset * std::sqrt(s.squared_radius) * random_.in_cube().x;

@@ -106,7 +106,7 @@ class CurveChains {
   void cells_made(const ConflictZone& zone, Index vertex);
   /// Judges all subsegments because sizes have changed everywhere.
   void judge_all();
-  /// Queues a subsegment to be split before skinny cells.
+  /// Queues a subsegment that must be split before skinny cells are destroyed.
   void encroach(Index subsegment);
 
   /// Visits all subsegments with their numbers.

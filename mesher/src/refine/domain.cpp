@@ -16,8 +16,8 @@ constexpr double reach_of_tiny_edge = 10;  // relative to the edge's length
 // The share of the distance tolerance that refinement aims at, because it tests only a few points of a face.
 constexpr double distance_reserve = 0.75;
 
-// Returns a box slightly different in each axis, so that its corners are not cospherical with points of
-// symmetric input.
+// Returns a box whose margin around the bounds is slightly different along each axis, so that its corners are
+// not cospherical with points of symmetric input.
 Box surrounding_box(const Box& bounds) {
   const Vector sides = bounds.max - bounds.min;
   const double extent = std::max({sides.x, sides.y, sides.z});

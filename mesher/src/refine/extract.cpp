@@ -16,7 +16,7 @@ namespace collarmesh {
 
 namespace {
 
-/// Orders the cells by their least points; cells with the same least point keep their order.
+/// Orders cells by the smallest number of their points; cells for which it is the same keep their order.
 std::vector<Index> order_by_least_point(const std::vector<Index>& least_points, std::size_t points) {
   return order_by_group(points, least_points.size(), [&](std::size_t i) { return least_points[i]; });
 }
@@ -75,7 +75,7 @@ class Extraction {
                                : refined_.stitched.tets[tet - cells_.size()].corners;
   }
 
-  // Adds points along a curve through space, so that near points are near in memory.
+  // Adds points in the order of a space-filling curve, so that near points are near in memory.
   void add_points() {
     std::vector<Point> places;
     resize_by_all_threads(vertices_.size(), places);
@@ -93,7 +93,7 @@ class Extraction {
     });
   }
 
-  // Adds tets in the order of their least points.
+  // Adds tets in the order of their smallest point numbers.
   void add_tets() {
     const std::size_t count = cells_.size() + refined_.stitched.tets.size();
     std::vector<Index> least;
@@ -151,7 +151,7 @@ class Extraction {
     mesh_.face_tag.push_back(plc_.patches[patch].tag);
   }
 
-  // Adds an edge, unless no tet has it.
+  // Adds an edge if both of its ends belong to tets.
   void add_edge(const std::array<Index, 2>& ends, Index curve) {
     if (number_[ends[0]] == none || number_[ends[1]] == none) return;
     mesh_.edges.push_back({number_[ends[0]], number_[ends[1]]});
@@ -167,7 +167,7 @@ class Extraction {
   }
 
   // Adds a face, oriented so that the normal points from the first region to the second. The regions are in
-  // the patch's order, except that a boundary's solid comes first.
+  // the patch's order, except that the inner region comes first at the boundary of the domain.
   void add_face(FaceId face) {
     const RefinedMesh& mesh = refined_.mesh;
     const Index cell = cell_of(face), beyond = cell_of(mesh.opposite(face));
@@ -194,7 +194,7 @@ class Extraction {
     add_face(v, regions, patch);
   }
 
-  // Orders faces by their least point, as tets are.
+  // Orders faces by their smallest point numbers, like tets.
   void order_faces() {
     std::vector<Index> least;
     least.reserve(mesh_.faces.size());

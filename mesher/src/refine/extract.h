@@ -25,8 +25,8 @@ struct Extracted {
 };
 
 /// Returns the result of the refinement: the cells inside regions and outside collars, and the stitched tets.
-/// Points lie in memory along a curve through space, tets and faces in the order of their least points, so
-/// that a loop over them finds neighbouring data in the caches.
+/// Points are in the order of a space-filling curve, tets and faces in the order of their smallest point
+/// numbers, so that a loop over them finds neighbouring data in the caches.
 Extracted extract(const Refined& refined);
 
 }  // namespace collarmesh

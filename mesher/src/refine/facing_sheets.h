@@ -11,12 +11,12 @@
 namespace collarmesh {
 
 /// Sheets of the surface that face each other across a gap narrower than the elements around it. If each were
-/// sampled alone, each sample would encroach the other sheet until both are sampled as densely as the gap is
-/// narrow. So a triangle or subsegment that a vertex encroaches from across a gap is split beneath that
-/// vertex. Samples in such pairs leave the balls of the other sheet's triangles and subsegments empty,
-/// however large these balls are; only the quality of cells in a thin part requires smaller ones. Outside the
-/// regions that quality is not needed, so there the edge between the vertices of a pair counts in no
-/// radius-edge ratio. In the paper's profile there are no pairs.
+/// sampled alone, each sample would encroach the other sheet until the distance of samples on both is about
+/// the width of the gap. So a triangle or subsegment that a vertex encroaches from across a gap is split
+/// beneath that vertex. Samples in such pairs leave the balls of the other sheet's triangles and subsegments
+/// empty, however large these balls are; only the quality of cells in a thin part requires smaller ones.
+/// Outside the regions that quality is not needed, so there the edge between the vertices of a pair counts in
+/// no radius-edge ratio. In the paper's profile there are no pairs.
 ///
 /// State: the pairs. TriangleQuality and CurveChains query them for their triangles and subsegments,
 /// CellQuality for cells that may stay; the loop records pairs.
@@ -32,12 +32,12 @@ class FacingSheets {
         surface_(surface),
         contacts_(domain.plc) {}
 
-  /// Returns the point of a restricted triangle's patch beneath a vertex of the triangle that lies on another
-  /// sheet.
+  /// Returns the point of a restricted triangle's patch that is beneath a vertex of the triangle on another
+  /// sheet; nothing if no vertex faces the patch across a narrow gap.
   std::optional<Candidate> candidate_across(FaceId face);
-  /// Returns the parameter on a subsegment, which has this direction, nearest to a vertex that encroaches it
-  /// from across a gap; nothing if there is no gap between them. Precondition: the vertex is none of its
-  /// ends.
+  /// Returns the parameter of a subsegment's place nearest to a vertex that encroaches the subsegment from
+  /// across a gap; nothing if there is no gap between them. `along` is the direction of the subsegment.
+  /// Precondition: the vertex is none of its ends.
   std::optional<double> parameter_across(const Subsegment& s, const Vector& along, Index vertex) const;
 
   /// Records that these vertices face each other; the second one exists or is inserted next.

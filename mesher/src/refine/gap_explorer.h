@@ -12,10 +12,10 @@
 
 namespace collarmesh {
 
-/// The gap size by exploring the mesh (paper, Procedure 4): breadth first from the Voronoi cell that contains
-/// the point, computing the distance of the elements that meet each cell, until the ball of the nearest
-/// witness is explored. Features that contain the point are left out as a whole, however finely they are
-/// tessellated.
+/// The gap size, found by exploring the mesh (paper, Procedure 4). The search goes breadth first from the
+/// Voronoi cell that contains the point, and computes the distances of the elements that meet each cell. It
+/// ends when all cells that meet the ball from the point to the nearest witness are explored. Features that
+/// contain the point are left out as a whole, however finely they are tessellated.
 class GapExplorer final : public GapSize {
  public:
   /// Keeps all by reference.
@@ -35,10 +35,10 @@ class GapExplorer final : public GapSize {
   double on_curve(Index curve, const Point& p, double bound = INFINITY) override;
 
   /// Returns whether a vertex or curve of the complex is isolated in the Voronoi cell of a mesh vertex
-  /// (paper, Definition 6): whether every feature that meets the cell contains it. A feature does not count
-  /// if its whole part in the cell lies in one of these balls: the cell of a point on the sphere of a vertex
-  /// ball reaches into the ball, where features come arbitrarily close. The witness against isolation is
-  /// stored, and tested first in the next query.
+  /// (paper, Definition 6): whether every feature that meets the cell contains the vertex or curve. A feature
+  /// does not count if its whole part in the cell lies in one of these balls: the cell of a point on the
+  /// sphere of a vertex ball reaches into the ball, where features come arbitrarily close. The witness
+  /// against isolation is stored, and tested first in the next query.
   bool isolated(const Feature& vertex_or_curve, Index cell, std::span<const CollarBall> except = {});
   /// Returns whether the last witness against the isolation of this vertex or curve is still in the cell
   /// where it was found.
@@ -55,8 +55,8 @@ class GapExplorer final : public GapSize {
   struct Border {
     std::array<Index, 3> vertices{none, none, none}, curves{none, none, none};
   };
-  /// Points of the element that last came near a vertex or curve that it does not contain, and the cell in
-  /// which it prevented isolation.
+  /// The corners of the element found last near a vertex or curve that its features do not contain, and the
+  /// mesh vertex in whose Voronoi cell it prevented isolation.
   struct Witness {
     std::array<Index, 3> points{none, none, none};
     Index cell = none;
@@ -75,10 +75,11 @@ class GapExplorer final : public GapSize {
   double squared_distance_to(const std::array<Index, 3>& points, const Point& x) const {
     return squared_distance_to_triangle(x, points_[points[0]], points_[points[1]], points_[points[2]]);
   }
-  /// Returns whether a witness has a part in this cell, whose neighbours are adjacent_, that does not lie
-  /// wholly in one of these balls.
+  /// Returns whether a witness has a part in this Voronoi cell that does not lie wholly in one of these
+  /// balls. Precondition: adjacent_ are the neighbours of the cell's vertex.
   bool reaches_into(Index cell, const std::array<Index, 3>& points, std::span<const CollarBall> except);
-  /// Writes the part of a triangle in the cell of this vertex, whose neighbours are adjacent_, to polygon_.
+  /// Sets polygon_ to the part of a triangle in the Voronoi cell of this vertex. Precondition: adjacent_ are
+  /// the vertex's neighbours.
   void cut_to_cell(Index vertex, const Point& a, const Point& b, const Point& c);
 
   const Plc& plc_;

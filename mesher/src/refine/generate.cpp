@@ -36,8 +36,8 @@ struct KeptNumbers {
   }
 };
 
-/// The complex without the patches outside all regions, and without curves and vertices that lie on no other
-/// patch: no mesh has them, so they need no refinement. Points and regions keep their numbers.
+/// The complex without the patches outside all regions, and without curves and vertices that lie only on such
+/// patches: no mesh has these features, so they need no refinement. Points and regions keep their numbers.
 class FeaturesInside {
  public:
   /// Keeps the complex by reference.

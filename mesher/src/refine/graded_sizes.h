@@ -33,7 +33,7 @@ class GradedSizes {
     for (const Index v : corners) size = std::min(size, at_vertex_[v]);
     return size + gradation_ * reach;
   }
-  /// Imposes a target edge length at this distance from the vertices.
+  /// Imposes a target edge length at a place at this distance from the vertices.
   void impose(std::span<const Index> vertices, double size, double distance);
 
   /// Sets the size of a new vertex. Precondition: the surface has labelled the new cells.

@@ -17,11 +17,12 @@ struct ChainLink {
 };
 
 /// The crease curves that have no collar yet, when collars are created in the pass: the history of their
-/// chains, and which of them may have become isolated.
+/// chains, and which of the creases may have become isolated.
 ///
-/// Invariant: an open crease that has changed since it was last tested is touched, once. CurveChains opens
-/// creases and reports their chains; CollarCreator touches them, tests them, and closes those that get their
-/// balls. All functions except `chain` do nothing for curves that are not open.
+/// Invariant: an open crease that has changed since it was last tested is touched, and is in the list of
+/// touched creases once. CurveChains opens creases and reports their chains; CollarCreator touches them,
+/// tests them, and closes those that get their balls. All functions except `chain` do nothing for curves that
+/// are not open.
 class OpenCreases {
  public:
   struct Chain {

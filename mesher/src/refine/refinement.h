@@ -43,8 +43,8 @@ class Refinement {
 
   /// Refines until nothing is left to do, a budget is spent or the caller cancels.
   MeshStatus run();
-  /// Returns whether a run that returned budget_hit was within the budget before the ratio was bounded in
-  /// narrow cells, too.
+  /// Returns whether a run exceeded its budget (`budget_hit`) only after it had begun to bound the
+  /// radius-edge ratio in narrow cells, too.
   bool narrow_cells_are_dear() const { return narrow_cells_are_dear_; }
   /// Returns the mesh, after run() returned complete or guarantee_missed.
   Extracted extract() const;
@@ -95,7 +95,8 @@ class Refinement {
   }
   bool check_gradation();
   bool check_collars();
-  /// Bounds the ratio in narrow cells when no other work is left. Returns whether there is more work now.
+  /// Bounds the radius-edge ratio in narrow cells when no other work is left. Returns whether there is more
+  /// work now.
   bool bound_narrow_cells();
   /// Returns whether a budget is spent, given a lower bound on the vertices to come.
   bool stopped(std::size_t planned_vertices = 0);
@@ -141,8 +142,8 @@ class Refinement {
   WorkQueue::Priority working_on_ = WorkQueue::priority_count;
   std::size_t steps_ = 0, warps_ = 0, yields_ = 0;
   double seconds_ = 0;
-  std::size_t most_with_narrow_cells_ = 0;  // number of vertices up to which the ratio of narrow cells is not
-                                            // bounded
+  std::size_t most_with_narrow_cells_ = 0;  // limit on vertices once the ratio of narrow cells is bounded; 0
+                                            // before
   bool narrow_cells_are_dear_ = false;
   std::function<void()> observer_;
 };

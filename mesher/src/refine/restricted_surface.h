@@ -118,7 +118,7 @@ class RestrictedSurface {
   /// cells_made if no vertex of the zone has nodes (SurfaceNodes).
   void quiet_cell_made(Index cell, Index region) { labels_[cell] = {.region = region}; }
 
-  /// Reports a new ball: checks whether it contains the places of this cell's triangles.
+  /// Reports a new ball: checks whether it contains the points `x` of this cell's triangles.
   void note_ball(Index cell, const CollarBall& ball);
   /// Gives a flat cell at the boundary, with a triangle there, to the outside. Marks its unmarked faces and
   /// unmarks its marked ones. Precondition: no vertex is inserted any more.

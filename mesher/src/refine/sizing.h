@@ -15,15 +15,15 @@ namespace collarmesh {
 /// splits; GradedSizes::cells_made, for the size at a new vertex; CollarCreator::target_size, for the radii
 /// of balls; coarsen/target_sizes.cpp and predict/vertex_counts.cpp, for the same sizes in other stages. A
 /// new kind of size must be added to each of them (doc/contributing.md); if it calls the user's code or is
-/// kept at vertices, BlockRefinement must not have rounds with it, as with `has_field`.
+/// kept at vertices, BlockRefinement must not run rounds with it, as with `has_field`.
 class Sizing {
  public:
   /// Target edge length per unit of a size given as a length; in other meshers' meshes the median edge
-  /// exceeds the size by more. Sizes given as numbers of elements, across a gap or on a circle, are used as
-  /// they are.
+  /// exceeds the size by more than this. Sizes given as numbers of elements, across a gap or on a circle, are
+  /// used as they are.
   static constexpr double edge_per_size = 1.08;
-  /// If the mesh will be coarsened, cells may exceed the ratio in gaps narrower than this share of the target
-  /// edge length: in wider gaps a bounded ratio costs little, and angles are better.
+  /// If the mesh will be coarsened, cells may exceed the radius-edge bound in gaps narrower than this share
+  /// of the target edge length: in wider gaps the bound costs little, and improves angles.
   static constexpr double narrow_gap_per_size = 0.1;
 
   /// Makes the sizes. Functions that take a place throw OptionError if the field returns no positive size
@@ -31,7 +31,7 @@ class Sizing {
   Sizing(const Plc& plc, const MeshOptions& options, const Frame& frame);
 
   /// Returns the largest allowed circumradius of a cell of this region at this point; infinite outside.
-  /// In all functions `graded` is a target edge length that gradation imposes.
+  /// `graded` is the target edge length that gradation imposes.
   double cell_radius(Index region, const Point& p, double graded) const {
     return region == 0 ? INFINITY : cell_radius_per_edge * std::min(graded, limited(region_size_[region], p));
   }
@@ -42,7 +42,8 @@ class Sizing {
   }
   /// Returns the largest allowed radius of a surface gap ball for this target edge length.
   static double triangle_radius(double size) { return triangle_radius_per_edge * size; }
-  /// Returns the target edge length on a curve, between two segments of its polyline, at a point.
+  /// Returns the target edge length for a piece of a curve, from segment `first` to segment `last` of the
+  /// curve's polyline, at a point of the piece.
   double curve_size(Index curve, std::size_t first, std::size_t last, const Point& p) const;
   /// Returns the largest allowed length of a subsegment for this target edge length.
   static double subsegment_length(double size) { return subsegment_length_per_edge * size; }
@@ -85,7 +86,7 @@ class Sizing {
 
   double at_least_minimum(double size) const { return std::max(size, size_min_); }
 
-  CurvatureSizes curved_;  // empty unless the options ask for it
+  CurvatureSizes curved_;  // empty unless the options ask for sizes by curvature
   double elements_across_gap_;
   std::vector<double> region_size_, patch_size_, curve_size_;  // target edge lengths by index
   std::function<double(const Point&)> field_;

@@ -6,8 +6,8 @@
 
 namespace collarmesh {
 
-/// A piece of a curve between two consecutive points, with its protective ball: centred where the curve meets
-/// the bisector plane of the ends.
+/// A piece of a curve between two consecutive points, with its protective ball, whose centre is where the
+/// curve meets the bisector plane of the ends.
 struct Subsegment {
   Index curve;
   std::array<Index, 2> ends;         ///< mesh vertices; none while the point is unresolved

@@ -19,8 +19,8 @@ namespace collarmesh {
 namespace {
 
 constexpr unsigned most_rounds = 240;  // sheets of one patch near each other settle slowly
-// A cell may be flat but for rounding if six times its volume over its longest edge cubed is below this
-// value.
+// A cell may be flat except for rounding if six times its volume is at most this share of its longest edge
+// cubed.
 constexpr double rounded_volume = 1e-13;
 constexpr std::size_t seeds_per_closed_patch = 4, seeds_per_missed_patch = 8;
 
@@ -238,8 +238,8 @@ void SurfaceCheck::resolve(const TessellationPoint& p, Index patch, FaceId neare
     points_.add({.point = p.at, .feature = {2, patch}, .apart = apart}, vertex);
 }
 
-// Turns tessellation points of smooth patches that are farther than the tolerance from the patch's triangles
-// into unresolved points: only the farthest one at each triangle, because one insertion serves all its
+// Finds the tessellation points of smooth patches that are farther from the patch's restricted triangles than
+// the tolerance. Resolves only the farthest one at each triangle, because one insertion serves all its
 // neighbours.
 bool SurfaceCheck::resolve_distant_points(const std::vector<FaceId>& faces) {
   if (first_tessellation_point_.empty()) prepare_tessellation();

@@ -43,7 +43,7 @@ class SurfaceNodes {
   void cells_made(const ConflictZone& zone, Index vertex);
 
   /// The data of a thread that inserts into blocks: scratch data, and the lists that it has made.
-  /// SurfaceNodes points into these lists, so SurfaceNodes must be destroyed first.
+  /// SurfaceNodes points into these lists, so they must exist as long as it is used.
   class Workspace {
    public:
     /// Returns the bytes of the lists: their sum over all threads does not depend on which thread made which.

@@ -51,7 +51,7 @@ std::vector<Side> sorted_sides(const std::vector<SurfaceTriangle>& triangles, st
 
 }  // namespace
 
-// Counts, at each segment of a curve, the triangles of the curve's patches, by patch.
+// Counts, at the first segment of each curve, the triangles of each of the curve's patches.
 void SurfaceTopology::count_curve_sides() {
   std::vector<CurveEdge> segments;  // by curve: its first segment
   segments.reserve(domain_.plc.curves.size());

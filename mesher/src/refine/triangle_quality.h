@@ -54,7 +54,7 @@ class TriangleQuality {
   /// and sizes.
   void cells_made(const ConflictZone& zone);
   /// Judges the triangles of new cells in a block. Several threads may call it, each with its own queue, if
-  /// no sizes come from the caller or are kept at vertices.
+  /// the caller gives no size field and no sizes are kept at vertices.
   void cells_made(const ConflictZone& zone, WorkQueue& queue) const;
   /// Judges all triangles because sizes have changed everywhere.
   void judge_all();

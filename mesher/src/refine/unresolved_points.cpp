@@ -8,8 +8,8 @@ namespace collarmesh {
 
 namespace {
 
-// Returns the exponent of a ball's squared radius. It is the stamp of a queued point: an entry with another
-// stamp is stale.
+// Returns the exponent of a ball's squared radius. It is the stamp of a queued point. An entry is stale if
+// the ball now has a smaller exponent.
 int exponent(double squared_radius) { return std::ilogb(std::max(squared_radius, 1e-300)); }
 
 }  // namespace

@@ -57,7 +57,7 @@ class UnresolvedPoints {
   /// Returns whether an unresolved point is theta_0-medial (paper, section 3.1 and appendix A): the second
   /// nearest mesh vertex is not much farther away than the nearest one.
   bool medial(Index point) const;
-  /// Returns the mesh vertex that a point became, or the nearest one.
+  /// Returns the mesh vertex that a point became or, while it is unresolved, the nearest mesh vertex.
   Index vertex_near(Index point) const {
     const Unresolved& p = points_[point];
     return p.vertex != none ? p.vertex : objects_[p.object].vertex;
