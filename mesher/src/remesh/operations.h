@@ -47,9 +47,9 @@ class Operations {
   void split_edge(Index a, Index b, double least, Change& change);
   /// Inserts a vertex like `split_edge`, even if the tets at the edge are better now.
   void split_edge_anyhow(Index a, Index b, double least, Change& change);
-  /// Inserts a vertex inside a region. Removes a tet or all tets at one of its edges, and as many around them
-  /// as make the worst new tet better, and fills the cavity from the vertex. Does so only if all new tets are
-  /// better than `least` and than `change`.
+  /// Inserts a vertex inside a region. Removes a tet or all tets at one of its edges, then further tets
+  /// beside them as long as that makes the worst new tet better, and fills the cavity from the vertex. Does
+  /// so only if all new tets are better than `least` and than `change`.
   void insert_in_cavity(Index tet, double least, Change& change);
   /// Inserts a vertex on an edge with any number of tets, if all new tets are better than `least`: inside a
   /// region or in a patch at this share of the edge's length or, if that fails, at the best place; on a curve
