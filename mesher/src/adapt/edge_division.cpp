@@ -21,7 +21,7 @@ namespace {
 // New tets must have at least this share of the quality of the worst tet at the edge. Halves of a tet have
 // about half of its smallest angle; later improvement finds better tets.
 constexpr double least_quality_share = 0.4;
-// Tets of at least this quality may become as bad as `least_quality_share` times it.
+// If all tets at an edge are better than this, `least_quality_share` is relative to this quality.
 constexpr double good_enough = 1;
 constexpr std::size_t edges_between_reports = 4096;
 // Crossing edges are divided only if they cross in their middle part. An edge on a curve can only be divided
