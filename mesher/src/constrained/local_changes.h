@@ -41,7 +41,7 @@ class LocalChanges {
   void set_budget(std::size_t rings) { budget_ = rings; }
 
   /// Inserts a point in or near some tetrahedra: replaces these, and as many neighbours as necessary, by
-  /// tetrahedra with that point. Returns its number, or none if a required edge or a facet is in the way.
+  /// tetrahedra with this point. Returns its number, or none if a required edge or a facet is in the way.
   Index insert(const Point& p, std::vector<Index> cavity);
 
  private:
