@@ -9,8 +9,8 @@
 
 namespace collarmesh::pipeline {
 
-/// A complex in which the regions around rods fill these, with vertices along their axes. Features are
-/// numbered anew.
+/// A complex in which the regions around rods extend into the rods, with vertices along the axes of the rods.
+/// Features are numbered anew.
 struct ComplexWithoutRods {
   Plc plc;
   /// By feature of this complex: the feature of the whole one; none for the vertices on axes.
