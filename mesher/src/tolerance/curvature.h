@@ -18,7 +18,7 @@ struct Curvature {
 /// triangulations and normal cycle, 2003). Cost: linear.
 std::vector<Curvature> curvatures(const Plc& plc, const Plc::Patch& patch);
 
-/// Target edge lengths, absolute, that put N elements on a full circle of the curvature.
+/// Target edge lengths, absolute, with which N elements make a full circle of the local curvature.
 struct CurvatureSizes {
   std::vector<double> triangle;  ///< size at every triangle of the complex; infinite where flat
   std::vector<std::vector<double>> curve_segment;  ///< size at every segment of every curve's polyline

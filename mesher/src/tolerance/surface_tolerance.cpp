@@ -46,8 +46,8 @@ constexpr double sizes_per_diagonal = 20;  // as for the default size, see refin
 class LocalTolerance {
  public:
   enum class Volumes {
-    kept,    // first order: judged by the triangles between corners
-    curved,  // second order: judged by the volume that curved elements enclose
+    kept,    // first order: flat triangles must keep the volumes
+    curved,  // second order: curved elements keep the volumes
     any      // the largest tolerance over all sizes and orders
   };
   LocalTolerance(const Plc& plc, double size)
