@@ -24,7 +24,7 @@ class CurveSlides {
 
   /// Returns whether this vertex on a curve can move at all.
   bool movable(Index vertex) const;
-  /// Returns the point of the vertex's curve at this arc length ahead of it.
+  /// Returns the point that lies ahead of the vertex on its curve by this arc length.
   Point ahead(Index vertex, double way) const;
   /// Returns whether the vertex may slide by this arc length.
   bool fits(Index vertex, double way) const;

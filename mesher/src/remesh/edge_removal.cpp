@@ -85,7 +85,8 @@ void Operations::remove_edge(Index tet, unsigned i, unsigned j, Change& change,
   if (n > largest_ring || (ring_.closed && m < 3)) return;
   // Finds the link vertices at which faces that must be preserved leave the edge.
   std::vector<std::pair<std::size_t, Index>> kept;
-  // A quality above this tet's is above that of the worst tet at the edge.
+  // A quality above that of this tet is also above that of the worst tet at the edge, which need not be known
+  // then.
   const bool known = anyhow_above || (!change.is_none() && change.quality >= quality(tet));
   double worst = known ? -INFINITY : INFINITY;
   for (std::size_t k = 0; k < n; ++k) {
