@@ -262,8 +262,8 @@ class Coarsening {
     looked_at_.push_back(vertex);
     for (Change& change : found.to_repair)
       if (collapse_and_repair(std::move(change), found.floor)) return;
-    // Whether an edge of a curve can be spared depends on more than the tets around; and not all tets at a
-    // pinched vertex are found.
+    // Record the failure only if it depends on the tets around alone, and all of these are known. Whether an
+    // edge of a curve can be spared depends on more, and not all tets at a pinched vertex are found.
     if (mesh().features[vertex].dimension > 1 &&
         std::ranges::none_of(looked_at_, [&](Index v) { return complex().pinched(v); }))
       failed_.note(vertex, looked_at_, changes_.now());
@@ -407,7 +407,7 @@ class Coarsening {
   }
 
   // Collects the items that `look(tet, found)` adds to `found`. Calls it once, in any order, for each tet
-  // with a vertex that has changed since the given time; if these are many, for other tets, too.
+  // with a vertex that has changed since the given time; if many vertices have changed, for other tets, too.
   template <class Found, class Look>
   std::vector<Found> found_at_changed(std::uint32_t since, const Look& look) const {
     const std::optional<std::vector<Index>> vertices = few_changed(since);

@@ -26,7 +26,7 @@ class Proposer {
  public:
   using Mode = CoarseningRule::Mode;
 
-  /// Keeps references to all but the number.
+  /// Keeps references to all arguments but `radius_edge`.
   Proposer(const EditableMesh& edited, const TetBounds& bounds, double radius_edge, const Metric& metric,
            const ChangeTimes& changes)
       : edited_(edited),
