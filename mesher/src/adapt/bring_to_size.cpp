@@ -67,8 +67,8 @@ class Bringing {
            (options_.max_vertices == 0 || mesh_.points.size() < options_.max_vertices);
   }
 
-  /// Divides edges of tets that miss their bounds at places that face each other, and improves tets, in
-  /// rounds.
+  /// Divides edges of tets that miss their bounds, so that the new vertices face each other, and improves
+  /// tets; in several rounds.
   void face_each_other() {
     for (unsigned round = 0; round < rounds && may_go_on() && divide_crossing() > 0; ++round)
       relax([](Relaxation& relaxation) { relaxation.improve(); });

@@ -222,7 +222,7 @@ class ComplexBuilder {
       }
   }
 
-  /// Throws PlcError for regions whose tets have no volume in all.
+  /// Throws PlcError for regions whose tets have no positive volume in total.
   void require_positive_regions() const {
     for (Index t = 0; t < mesh_.tets.size(); ++t) {
       const Plc::Region& region = plc_.regions[mesh_.tet_region[t]];

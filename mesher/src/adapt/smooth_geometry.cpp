@@ -30,7 +30,7 @@ constexpr double least_cosine_to_facets = 0.5;
 // A normal at the border is extrapolated from normals at two distances from the border. These distances must
 // differ by at least this share of the larger one.
 constexpr double least_room_to_extrapolate = 0.3;
-// Limits on steps from facet to facet, and of Newton's method, which needs three or four.
+// Limits on the steps from facet to facet, and on the steps of Newton's method, which needs three or four.
 constexpr int most_walks = 16, most_newton_steps = 20;
 constexpr double rounding = 1e-12;  // relative
 
