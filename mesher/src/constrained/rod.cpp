@@ -229,8 +229,8 @@ bool Rod::finish_at_end() {
   return set_directions();
 }
 
-/// Begins at the middle of a chord along any normal. This chord and the shortest one through its middle span
-/// the section.
+/// Begins at the middle of a chord of the body along any normal of the patch. This chord and the shortest one
+/// through its middle span the section.
 bool Rod::begin_loop(RodSection& first) const {
   constexpr unsigned directions = 48;
   const auto [a, b, c] = hierarchy_->corners(0);

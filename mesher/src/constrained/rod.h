@@ -89,8 +89,8 @@ class Rod {
   const std::vector<Point>& axis() const { return axis_; }
   /// Returns the number of parts of a turn by which the first ring lags behind the ring after the last one.
   std::size_t shift() const { return shift_; }
-  /// Returns the place after a share of the rings, from 0 at the first one to 1, with its frame turned to the
-  /// first vertex of a ring there.
+  /// Returns the section at a share of the rings (0: the first ring, 1: the last one). Turns its frame so
+  /// that a ring there has its first vertex in the direction `across`.
   RodSection frame_at(double share) const;
   TetMesh::VertexFeature feature_of(std::size_t ring, const Point& point) const;
 

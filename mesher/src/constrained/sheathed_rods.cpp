@@ -69,8 +69,8 @@ class SheathFilling {
     mesh_.tet_thin.assign(mesh_.tets.size(), 0);
   }
 
-  /// Returns the number of parts of a turn after each of which the layers look the same. Every second vertex
-  /// of the outermost layer is alike.
+  /// Returns the number of parts of a turn after each of which the layers look the same. In the outermost
+  /// layer only every second vertex is alike.
   static std::size_t parts_of_turn(std::size_t in_ring) {
     std::size_t parts = in_ring;
     for (const Layer& layer : layers_around(in_ring)) parts = std::gcd(parts, layer.count);
@@ -78,7 +78,7 @@ class SheathFilling {
   }
 
  private:
-  // Every second vertex of the outermost layer is moved along by this share of the distance of rings.
+  // Every second vertex of the outermost layer is moved along the rod by this share of the distance of rings.
   // Otherwise the corners of the skin's quadrilaterals would lie on circles, and Delaunay tetrahedra beside
   // it might have either diagonal.
   static constexpr double shifted = 0.15;
@@ -337,7 +337,7 @@ std::size_t find_rings(Rod& rod) {
   return 0;
 }
 
-/// Finds the axis and points along it.
+/// Finds the axis and the seeds on it.
 void trace_axis(const Rod& rod, SheathedRod& made) {
   const std::size_t places = 2 * rod.steps();
   const auto centre = [&](double i, std::size_t of) {
