@@ -17,7 +17,7 @@ struct ComplexWithoutRods {
   std::vector<Index> vertex_of, curve_of, patch_of, region_of;
   std::vector<Index> triangle_of;  ///< by triangle, likewise
 
-  /// Returns a tolerance of the whole complex for this one.
+  /// Returns the tolerance of this complex that corresponds to one of the whole complex.
   SurfaceTolerance tolerance_from(const SurfaceTolerance& whole) const;
 };
 

@@ -150,8 +150,8 @@ bool MeshMaker::take_sheathed_rods() {
   return false;
 }
 
-/// Makes a mesh with sheaths around rods. Removes the rods that have no sheath in it. Returns whether every
-/// guarantee holds.
+/// Makes a mesh with sheaths around rods. Removes from the list the rods that get no sheath. Returns whether
+/// every guarantee holds.
 bool MeshMaker::is_good_with_sheaths(std::vector<SheathedRod>& rods) {
   try {
     std::vector<Index> fixed;

@@ -269,8 +269,8 @@ void refine_without(MeshJob& job, const ComplexWithoutRods& without, const std::
   job.neighbours = KnownNeighbours();  // they belong to the complex without rods
 }
 
-/// Returns whether all tets of a rod and its sheath keep the bounds on the angles of thin tets. Tets
-/// between rings that are near each other, as in a bend, and layers that are far apart miss them.
+/// Returns whether all tets of a rod and its sheath keep the bounds on the angles of thin tets. Tets miss
+/// them where rings are near each other, as in a bend, but layers are far apart.
 bool keeps_angles(const TetMesh& mesh, double thin_angle) {
   return std::ranges::all_of(mesh.tets, [&](const std::array<Index, 4>& tet) {
     const auto& p = mesh.points;

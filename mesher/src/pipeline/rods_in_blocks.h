@@ -9,7 +9,7 @@
 namespace collarmesh::pipeline {
 
 /// Returns the thin rods and rings of the complex that lie inside other regions and have room for sheaths,
-/// with these. Throws Ended.
+/// with their sheaths. Throws Ended.
 std::vector<SheathedRod> find_sheathed_rods(MeshJob& job);
 
 /// Makes a mesh of a complex with such rods: refines the complex without them, and puts their tetrahedra and
