@@ -278,8 +278,8 @@ class ComplexBuilder {
     return true;
   }
 
-  /// Finds the mesh side of which each triangle of the complex was made. Throws PlcError if a side has no
-  /// triangle.
+  /// Finds for each triangle of the complex the mesh side that it was made from. Throws PlcError if a side
+  /// has no triangle.
   void find_triangles() {
     std::vector<std::pair<Triangle, Index>> sides;
     for (Index s = 0; s < found_.sides.size(); ++s) sides.emplace_back(sorted(found_.sides[s].corners), s);

@@ -119,9 +119,9 @@ class LocalTolerance {
     }
   }
 
-  // Keeps the volume of wedges. Where a patch and the opposite side of a thin place meet in a crease, a share
-  // of the thickness would go to zero towards the crease. So the share of the volume below the patch is
-  // limited there instead.
+  // Keeps the volume of wedges. Where a patch and the opposite side of a thin place meet in a crease, a
+  // tolerance that is a share of the thickness would go to zero towards the crease. So the share of the
+  // volume below the patch is limited there instead.
   void keep_wedges() {
     std::vector<double> at_points(plc_.points.size(), INFINITY);
     bool any = false;
