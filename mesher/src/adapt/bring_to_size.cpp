@@ -28,7 +28,8 @@ constexpr unsigned most_halvings = 12;
 constexpr double around = 0.3;
 // Edges longer than this factor times the target are divided.
 constexpr double longest = coarsening::CoarseningRule::longest_new;
-// Seeds differ in this factor: each is smaller than that of the seed before by this share, `seeds` in turn.
+// Each seed makes `longest` smaller than the seed before by this share; after `seeds` seeds the values
+// repeat.
 constexpr double less_by_seed = 0.03;
 constexpr unsigned seeds = 4;
 
@@ -36,7 +37,8 @@ constexpr unsigned seeds = 4;
 // unit of distance.
 constexpr double of_shortest = 1.5, growth = 1;
 
-// Graded sizes are used only if they multiply the number of tets by at most `most_times`, plus `some`.
+// Graded sizes are used only if they take at most `most_times` as many tets as the targets, plus `some`. The
+// estimate counts `tets_per_cube` tets in a cube whose side is the target.
 constexpr double most_times = 2, some = 2000, tets_per_cube = 8;
 
 class Bringing {
@@ -65,8 +67,8 @@ class Bringing {
            (options_.max_vertices == 0 || mesh_.points.size() < options_.max_vertices);
   }
 
-  /// Divides edges of tets that miss their bounds at places that face each other, and improves tets, in
-  /// rounds.
+  /// Divides edges of tets that miss their bounds, so that the new vertices face each other, and improves
+  /// tets; in several rounds.
   void face_each_other() {
     for (unsigned round = 0; round < rounds && may_go_on() && divide_crossing() > 0; ++round)
       relax([](Relaxation& relaxation) { relaxation.improve(); });
@@ -126,8 +128,8 @@ class Bringing {
 
   bool is_thin() const { return take_too_many_tets(sizes_beside_short_edges()); }
 
-  /// Divides edges along thin parts where vertices face each other, and collapses those around and across
-  /// them that are no longer needed. Nothing moves in between, so that vertices go on facing each other.
+  /// Divides edges along thin parts at places that face vertices, and collapses edges around and across these
+  /// parts that are no longer needed. Nothing moves in between, so that vertices go on facing each other.
   void divide_thin() {
     for (unsigned pass = 0; pass < most_halvings && may_go_on(); ++pass) {
       const std::size_t divided = edit([&](EditableMesh& edited) {
@@ -146,7 +148,7 @@ class Bringing {
     const auto& p = mesh_.points;
     double sum = 0;
     for (const auto& tet : mesh_.tets) {
-      double pieces = 1;  // number of pieces of the tet's extent
+      double pieces = 1;  // length of the longest edge in target lengths, at least 1
       for (const auto& [i, j] : cell_shapes::corner_pairs)
         pieces = std::max(pieces, metric.length(tet, p[tet[j]] - p[tet[i]]));
       const double volume = six_volume(p[tet[0]], p[tet[1]], p[tet[2]], p[tet[3]]) / 6;

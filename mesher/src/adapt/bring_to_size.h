@@ -17,8 +17,8 @@ bool bring_to_size(TetMesh& mesh, const Plc& plc, const MeshOptions& options, co
 /// around gets much worse.
 void relax(TetMesh& mesh, const Plc& plc, const MeshOptions& options, const Execution& execution);
 
-/// Divides edges on opposite sides of thin places at vertices that face each other, where fewer tets miss the
-/// bounds then. Returns whether the mesh has changed.
+/// Divides edges on opposite sides of thin places, so that the new vertices face each other, where fewer tets
+/// miss the bounds afterwards. Returns whether the mesh has changed.
 bool face_each_other(TetMesh& mesh, const Plc& plc, const MeshOptions& options, const Execution& execution);
 
 }  // namespace collarmesh::remeshing::adapting

@@ -21,7 +21,7 @@ namespace {
 // New tets must have at least this share of the quality of the worst tet at the edge. Halves of a tet have
 // about half of its smallest angle; later improvement finds better tets.
 constexpr double least_quality_share = 0.4;
-// Tets of at least this quality may become as bad as `least_quality_share` times it.
+// If all tets at an edge are better than this, `least_quality_share` is relative to this quality.
 constexpr double good_enough = 1;
 constexpr std::size_t edges_between_reports = 4096;
 // Crossing edges are divided only if they cross in their middle part. An edge on a curve can only be divided
@@ -99,7 +99,8 @@ double EdgeDivision::length_by_field(const LongEdge& edge) const {
   return std::max(edge.length, distance(a, b) / sizing_.default_size(0.5 * (a + b)));
 }
 
-// Finds long edges with one thread: the field may belong to a caller who expects one call at a time.
+// Finds long edges. Queries the size field with one thread: it may belong to a caller who expects one call at
+// a time.
 std::vector<EdgeDivision::LongEdge> EdgeDivision::long_edges(double longest) const {
   const bool all = sizing_.has_field();
   std::vector<LongEdge> edges =
@@ -309,8 +310,8 @@ bool EdgeDivision::is_better(const Trial& trial) {
   return false;
 }
 
-/// Returns where to divide an edge, as a share of its length: at the place nearest to the middle that a near
-/// vertex of the tets around faces; in the middle if no vertex faces the middle part of the edge.
+/// Returns where to divide an edge, as a share of its length: at the place nearest to the middle that faces a
+/// near vertex of the tets around; in the middle if no vertex faces the middle part of the edge.
 double EdgeDivision::share_facing(Index a, Index b, const TetComplex::Ring& ring) const {
   constexpr double middle_part = 0.3, near = 0.1;  // relative to the edge
   const Point& from = mesh().points[a];

@@ -24,15 +24,15 @@ class EdgeDivision {
   /// at `most_vertices`; 0: no bound.
   std::size_t divide_all(double longest, std::size_t most_vertices, const Execution& execution);
   /// Divides, like `divide_all`, each edge that is farther from its smooth patch or curve than the tolerance,
-  /// and the longest edge of each face whose centre is.
+  /// and the longest edge of each face whose centre is too far from the patch.
   std::size_t divide_distant(std::size_t most_vertices, const Execution& execution);
-  /// From now on, divides an edge with a vertex near it at the place that faces the vertex, not in the
+  /// Makes later calls divide an edge with a vertex near it at the place that faces the vertex, not in the
   /// middle.
   void divide_facing() { facing_ = true; }
-  /// Divides opposite edges of a flat tet, as between the two sides of a thin wall, where they cross, at two
-  /// places that face each other; or one edge at a place that faces a corner. Does so for tets that miss
-  /// their bounds, if fewer tets miss them then, or as many as before but the worst are better. Returns the
-  /// number of tets whose edges it divided.
+  /// Divides edges of tets that miss their bounds: two opposite edges of a flat tet, as between the two sides
+  /// of a thin wall, at the places where they cross, which face each other; or one edge at a place that faces
+  /// a corner. Keeps a division if fewer tets miss their bounds then, or as many as before but the worst are
+  /// better. Returns the number of tets whose edges it divided.
   std::size_t divide_crossing(const Execution& execution);
 
  private:

@@ -19,7 +19,8 @@ namespace collarmesh::remeshing::adapting {
 
 namespace {
 
-// A volume below this share of the cube of a length may be due to rounding of coordinates in files.
+// If six times the volume of an inverted tet is below this share of the cube of its extent, the inversion may
+// be due to rounding of coordinates in files.
 constexpr double rounded_volume = 1e-6;
 
 std::string text(const Point& p) { return fmt::format("({:.9g}, {:.9g}, {:.9g})", p.x, p.y, p.z); }
@@ -55,10 +56,10 @@ struct MeshSide {
   Index face;           ///< index of the mesh's face; none if it is not listed
 };
 
-/// The mesh sides in the order of their tets, and which tets are connected without crossing one. If the mesh
-/// lists every side of its tets, listed faces inside a region count only if they have a tag other than 0. The
-/// constructor throws PlcError for sides that more than two tets share, and for listed faces that are no side
-/// of a tet; messages name points by `given`. Cost: O(n log n).
+/// The mesh sides in the order of their tets, and which tets are connected across faces that are no mesh
+/// sides. If the mesh lists every side of its tets, listed faces inside a region count only if they have a
+/// tag other than 0. The constructor throws PlcError for sides that more than two tets share, and for listed
+/// faces that are no side of a tet; messages name points by `given`. Cost: O(n log n).
 struct MeshSides {
   MeshSides(const TetMesh& mesh, const std::vector<Index>& given);
 
@@ -221,7 +222,7 @@ class ComplexBuilder {
       }
   }
 
-  /// Throws PlcError for regions whose tets have no volume in all.
+  /// Throws PlcError for regions whose tets have no positive volume in total.
   void require_positive_regions() const {
     for (Index t = 0; t < mesh_.tets.size(); ++t) {
       const Plc::Region& region = plc_.regions[mesh_.tet_region[t]];
@@ -277,8 +278,8 @@ class ComplexBuilder {
     return true;
   }
 
-  /// Finds the mesh side of which each triangle of the complex was made. Throws PlcError if a side has no
-  /// triangle.
+  /// Finds for each triangle of the complex the mesh side that it was made from. Throws PlcError if a side
+  /// has no triangle.
   void find_triangles() {
     std::vector<std::pair<Triangle, Index>> sides;
     for (Index s = 0; s < found_.sides.size(); ++s) sides.emplace_back(sorted(found_.sides[s].corners), s);

@@ -10,7 +10,7 @@ namespace collarmesh::remeshing::adapting {
 /// this complex at all its points, faces and edges.
 struct MeshComplex {
   Plc plc;
-  TetMesh mesh;  ///< that of `CornerMesh`, with the edges of all curves
+  TetMesh mesh;  ///< the mesh of `CornerMesh`, with the edges of all curves
 };
 
 /// The part of a mesh that remeshing keeps: its tets and their corners, and the corners of its faces and

@@ -16,7 +16,8 @@ namespace {
 constexpr double share_left = 0.3;
 // Edges are collapsed below these shares of the target, one share after the other.
 constexpr std::array lengths{0.05, 0.2, 0.5, 0.7};
-// Qualities. A tet within the bounds on thin tets has at least 1.
+// Qualities: tets are improved up to `good` between collapses and up to `better` afterwards, and no collapse
+// makes a tet below `least`. A tet within the bounds on thin tets has at least 1.
 constexpr double good = 1, better = 1.3, least = 1e-12;
 constexpr unsigned most_relaxations = 4, most_improvements = 3;
 // If a pass changes fewer than this share of the vertices or tets, it is the last one of its kind.

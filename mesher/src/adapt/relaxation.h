@@ -27,7 +27,7 @@ class Relaxation {
   Relaxation(EditableMesh& edited, const MeshOptions& options, std::vector<double> sizes,
              const Execution& execution);
 
-  /// Collapses short edges and improves tets, for lengths that grow up to the target.
+  /// Collapses edges shorter than a share of the target and improves tets; repeats this with larger shares.
   void collapse();
   /// Collapses edges shorter than this share of the target, without any improvement.
   void collapse_short(double below);

@@ -36,8 +36,8 @@ namespace {
 constexpr unsigned most_rounds = 40, most_passes = 3;
 // Each round divides the distance of an edge from its curve or patch by four.
 constexpr unsigned most_distance_rounds = 6;
-// The faces at one half of an edge that was too far may be farther off than the old faces by this factor,
-// until the other edges around are divided, too.
+// If an edge too far from its patch is divided, the faces at one half may be farther from the patch than the
+// old faces by this factor, until the other edges around are divided, too.
 constexpr double distant_halves = 2;
 // If a pass of divisions changes a smaller share of the vertices, it is the last one.
 constexpr double least_share = 0.01;
@@ -49,9 +49,9 @@ constexpr double longest_at_first = 1.4142, longest_later = coarsening::Coarseni
 constexpr double any_ratio = 1e12;
 // Smaller than any ratio: with this bound angles alone decide, and slivers with a small ratio are forbidden.
 constexpr double no_ratio = 0.1;
-// `distance_left` is the share of the distance from a given complex that operations may use: the rest is for
-// points between those where they measure it, and for moves onto exact geometry. `angle_reserve` is the share
-// of the bounds on angles that is kept in reserve for these moves.
+// With a given complex or a reconstructed surface, operations may use the share `distance_left` of the
+// tolerance: the rest is for points between those that they test, and for moves onto exact geometry.
+// `angle_reserve` is the share of the bounds on angles that is kept in reserve for these moves.
 constexpr double distance_left = 0.75, angle_reserve = 0.05;
 constexpr unsigned most_rounds_of_poor = 4;
 // If more than this share of the tets misses the bounds on angles, the whole mesh is brought to its size
@@ -195,7 +195,7 @@ class Remeshing {
     largest_size_ = std::min(diagonal, *std::ranges::max_element(sizes));
   }
 
-  /// Returns the mean length of the edges at each vertex.
+  /// Returns for each vertex the size that asks for edges of the present mean length there.
   std::vector<double> lengths_at_vertices() {
     std::vector<double> sum(mesh().points.size(), 0), count(sum);
     for (const auto& tet : mesh().tets)
@@ -244,7 +244,8 @@ class Remeshing {
     require_budget();
   }
 
-  /// Divides edges so that vertices face each other, and coarsens again, while fewer tets miss the bounds.
+  /// Divides edges so that vertices face each other, and coarsens again, as long as that reduces the number
+  /// of tets that miss the bounds.
   void relax() {
     std::size_t fewest = count_beyond(options_.mesh.bounds.thin_angle, forced_edges());
     for (unsigned round = 0; round < most_rounds_of_poor && fewest > 0; ++round) {

@@ -25,13 +25,12 @@ namespace {
 constexpr double share_of_tolerance = 0.7;
 // Triangles of a patch, or segments of a curve, that turn by more than 50 degrees (cosine) are not smooth.
 constexpr double least_cosine_of_turn = 0.643;
-// A corner whose normal is farther from that of a triangle than this (cosine of 60 degrees) is no place for a
-// smooth surface.
+// A surface is not smooth at a corner whose normal is more than 60 degrees (cosine) from that of a triangle.
 constexpr double least_cosine_to_facets = 0.5;
 // A normal at the border is extrapolated from normals at two distances from the border. These distances must
 // differ by at least this share of the larger one.
 constexpr double least_room_to_extrapolate = 0.3;
-// Limits on steps from facet to facet, and of Newton's method, which needs three or four.
+// Limits on the steps from facet to facet, and on the steps of Newton's method, which needs three or four.
 constexpr int most_walks = 16, most_newton_steps = 20;
 constexpr double rounding = 1e-12;  // relative
 
@@ -88,7 +87,8 @@ class SmoothCurve {
  private:
   std::size_t end_of(Index segment) const { return (segment + 1) % points_.size(); }
 
-  /// Gives the end of an open curve the tangent of the circle through it with the next point's tangent.
+  /// Gives the end of an open curve the tangent of a circle there: the circle through the end and the next
+  /// point that has the tangent of the curve at the next point.
   void end_like(std::size_t end, std::size_t next) {
     const Vector along = unit(points_[std::max(end, next)] - points_[std::min(end, next)]);
     bends_[end] = bends_[next];
@@ -102,7 +102,7 @@ class SmoothCurve {
     return direction > 0 ? (segment + 1) % count : (segment + count - 1) % count;
   }
 
-  /// Returns the parameter whose plane across the interpolated tangents contains p.
+  /// Returns the parameter at which p lies in the plane perpendicular to the interpolated tangent.
   double solve(Index segment, const Point& p) const {
     const Point& a = points_[segment];
     const Vector along = points_[end_of(segment)] - a, t = tangents_[segment],
@@ -143,7 +143,7 @@ class SmoothCurve {
 /// A smooth surface through the points of a patch.
 class SmoothPatch {
  public:
-  /// `tangents`: by point of the complex, that of a smooth curve there, else zero.
+  /// `tangents`: by point of the complex, the tangent of a smooth curve there, else zero.
   SmoothPatch(const Plc& plc, Index patch, const SurfaceTolerance& tolerance,
               const std::vector<Vector>& tangents);
 

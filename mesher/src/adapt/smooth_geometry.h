@@ -16,9 +16,9 @@ namespace collarmesh::remeshing::adapting {
 /// are weighted so that they are exact on spheres (Max, Weights for computing vertex normals from facet
 /// normals, 1999). Displaces the segments of a curve by cubics, too, such that the curve is tangent at each
 /// point to the circle through this point and its two neighbours. Where triangles of a patch, or segments of
-/// a curve, meet at too sharp an angle to be smooth, they run straight into that point. No point moves
-/// farther from the facets than a share of the tolerance. Planar patches and straight curves stay as they
-/// are. Keeps the complex by reference. Cost: O(n log n).
+/// a curve, meet at a point at too sharp an angle to be smooth, they run straight into the point. No point
+/// moves farther from the facets than a share of the tolerance. Planar patches and straight curves stay as
+/// they are. Keeps the complex by reference. Cost: O(n log n).
 ExactGeometry smooth_geometry(const Plc& plc, const SurfaceTolerance& tolerance);
 
 }  // namespace collarmesh::remeshing::adapting

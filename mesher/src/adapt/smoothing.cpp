@@ -22,7 +22,7 @@ constexpr unsigned most_sweeps = 2;
 constexpr double least_share_moved = 0.01;
 // Share by which a move must raise the sum of the mean ratios.
 constexpr double least_gain = 1e-3;
-// Shares of the way that a move tries.
+// Shares of the way to the new place that a move tries, one after the other.
 constexpr std::array steps{1.0, 0.5};
 constexpr std::size_t vertices_at_once = 64;
 constexpr unsigned most_colours = 64;

@@ -47,8 +47,8 @@ constexpr unsigned most_sweeps = 8;
 constexpr double least_share = 0.005;
 constexpr std::size_t collapses_per_repair = 10;
 constexpr std::size_t steps_between_reports = 4096;
-// If more than one change in this many tets was logged, looking at all tets costs less than finding the tets
-// at the changed vertices.
+// If the log has more than one change for each `tets_per_logged_change` tets, visiting all tets costs less
+// than finding the tets at the changed vertices.
 constexpr std::size_t tets_per_logged_change = 24;
 // Items of one rank are cut into rows: one for each `items_per_row` items of all ranks, at most `most_rows`.
 constexpr std::size_t most_rows = 256, items_per_row = 16;
@@ -262,8 +262,8 @@ class Coarsening {
     looked_at_.push_back(vertex);
     for (Change& change : found.to_repair)
       if (collapse_and_repair(std::move(change), found.floor)) return;
-    // Whether an edge of a curve can be spared depends on more than the tets around; and not all tets at a
-    // pinched vertex are found.
+    // Record the failure only if it depends on the tets around alone, and all of these are known. Whether an
+    // edge of a curve can be spared depends on more, and not all tets at a pinched vertex are found.
     if (mesh().features[vertex].dimension > 1 &&
         std::ranges::none_of(looked_at_, [&](Index v) { return complex().pinched(v); }))
       failed_.note(vertex, looked_at_, changes_.now());
@@ -325,7 +325,8 @@ class Coarsening {
     std::size_t count = 0;
     Index worst = none;
   };
-  // Returns the tets that a trial made or changed and whose quality is below the floor.
+  // Returns the number of tets that a trial made or changed and that are below the floor or lack the
+  // guarantee, and the worst of them.
   ToMend tets_to_mend(double floor) const {
     ToMend found;
     double least = INFINITY;
@@ -342,7 +343,7 @@ class Coarsening {
     return found;
   }
 
-  // Improves tets. Returns true if nothing more helps, so that another attempt would find the mesh unchanged.
+  // Improves tets. Returns true if nothing more helps, so that another attempt would change nothing.
   bool improve_all() {
     for (unsigned sweep = 0; sweep < most_sweeps; ++sweep)
       if (!improve_once()) return true;
@@ -406,7 +407,7 @@ class Coarsening {
   }
 
   // Collects the items that `look(tet, found)` adds to `found`. Calls it once, in any order, for each tet
-  // with a vertex that has changed since the given time; if these are many, for other tets, too.
+  // with a vertex that has changed since the given time; if many vertices have changed, for other tets, too.
   template <class Found, class Look>
   std::vector<Found> found_at_changed(std::uint32_t since, const Look& look) const {
     const std::optional<std::vector<Index>> vertices = few_changed(since);
@@ -430,7 +431,7 @@ class Coarsening {
     return all;
   }
 
-  // Returns the smallest corner that has changed since.
+  // Returns the smallest corner that has changed since this time.
   Index first_changed(Index tet, std::uint32_t since) const {
     Index first = none;
     for (const Index v : complex()[tet].corners)
@@ -438,8 +439,8 @@ class Coarsening {
     return first;
   }
 
-  // Returns the vertices that have changed since and still exist, if they are few and the tets at each are
-  // connected by faces.
+  // Returns the vertices that have changed since this time and still exist, if they are few and the tets at
+  // each are connected by faces.
   std::optional<std::vector<Index>> few_changed(std::uint32_t since) const {
     if (since < log_begins_) return std::nullopt;
     const auto first =

@@ -53,7 +53,8 @@ Change Proposer::improvement_of(Index tet, Mode mode) {
     if (change.quality >= improved_below) break;
   }
   for (unsigned i = 0; i < 4 && change.is_none(); ++i) {
-    // Whether a move helps depends only on the tets at the vertex; each of them would propose it again.
+    // Whether a move helps depends only on the tets at the vertex, so it is not tried again for each of these
+    // tets.
     if (mode == Mode::final && stays(corners[i])) continue;
     operations_.move_vertex(corners[i], change);
     if (mode == Mode::final && change.is_none()) stayed_[corners[i]] = changes_.now();

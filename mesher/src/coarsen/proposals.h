@@ -14,7 +14,7 @@ namespace collarmesh::remeshing::coarsening {
 struct VertexProposal {
   Change change;  ///< a collapse that shapes allow, too, onto the nearest possible neighbour; or
                   ///< none
-  std::vector<Change> to_repair;  ///< collapses onto each neighbour that leave tets to improve
+  std::vector<Change> to_repair;  ///< collapses, at most one onto each neighbour, that leave tets to improve
   double floor = 0;               ///< repairs may make no tet worse than this
   /// The proposal depends on the tets at the vertex and at these vertices. Empty inside regions, where the
   /// link condition is not checked.
@@ -26,7 +26,7 @@ class Proposer {
  public:
   using Mode = CoarseningRule::Mode;
 
-  /// Keeps references to all but the number.
+  /// Keeps references to all arguments but `radius_edge`.
   Proposer(const EditableMesh& edited, const TetBounds& bounds, double radius_edge, const Metric& metric,
            const ChangeTimes& changes)
       : edited_(edited),

@@ -80,8 +80,9 @@ double angle(const Point& a, const Point& at, const Point& b) {
   return std::atan2(norm(cross(a - at, b - at)), dot(a - at, b - at));
 }
 
-/// Returns whether the line cd separates a from b, all in one plane. Exact: decides in the projection along
-/// the axis nearest to the normal, or in the next projection if that one maps all points to a line.
+/// Returns whether the line cd separates a from b. Precondition: all four points lie in one plane. Exact:
+/// decides in the projection along the axis nearest to the normal, or in the next projection if that one maps
+/// all points to a line.
 bool parts(const Point& c, const Point& d, const Point& a, const Point& b) {
   const Vector normal = cross(d - c, a - c);
   std::array<unsigned, 3> axes{0, 1, 2};
@@ -230,7 +231,7 @@ bool BoundaryRecovery::run(const std::function<bool()>& go_on) {
   return true;
 }
 
-/// Keeps a change if it leaves fewer obstacles.
+/// Makes a change, and undoes it unless it leaves fewer obstacles.
 bool BoundaryRecovery::reduce(const std::function<std::optional<int>()>& change) {
   const std::size_t before = mesh_.mark();
   const std::optional<int> gain = change();

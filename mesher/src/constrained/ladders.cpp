@@ -294,7 +294,7 @@ class Ladders {
     }
   }
 
-  /// Where both diagonals of a cell are equally good, chooses the one along the given direction, so that
+  /// Chooses the diagonal along the given direction where both diagonals of a cell are equally good, so that
   /// diagonals on opposite walls do not cross.
   void choose_diagonals() {
     const std::vector<std::uint64_t> keys = keys_;

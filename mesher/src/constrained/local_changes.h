@@ -32,8 +32,8 @@ class LocalChanges {
   /// Replaces the two tetrahedra at a face by three at the edge that joins the corners beyond it.
   std::optional<int> remove_face(const Tetrahedra::Face& face, const Obstacles& obstacles);
   /// Triangulates the ring of an edge again, with the fewest obstacles. If every triangulation makes a
-  /// tetrahedron without positive volume, or adds more than `most` obstacles, removes edges around it first,
-  /// recursively to this depth.
+  /// tetrahedron without positive volume, or adds more than `most` obstacles, removes other edges around this
+  /// edge first, recursively to this depth.
   std::optional<int> remove_edge(Index a, Index b, unsigned depth, const Obstacles& obstacles, int most);
 
   /// Sets the number of further triangulated rings after which `remove_edge` no longer removes other edges
@@ -41,7 +41,7 @@ class LocalChanges {
   void set_budget(std::size_t rings) { budget_ = rings; }
 
   /// Inserts a point in or near some tetrahedra: replaces these, and as many neighbours as necessary, by
-  /// tetrahedra with that point. Returns its number, or none if a required edge or a facet is in the way.
+  /// tetrahedra with this point. Returns its number, or none if a required edge or a facet is in the way.
   Index insert(const Point& p, std::vector<Index> cavity);
 
  private:
@@ -63,7 +63,7 @@ class LocalChanges {
   const std::unordered_set<std::uint64_t>& required_;
   std::size_t budget_ = 0;
   std::vector<int> least_;          // by i * n + j: fewest obstacles of the ring's part from i to j
-  std::vector<std::size_t> third_;  // the corner of the triangle on ij in that triangulation
+  std::vector<std::size_t> third_;  // the third corner of the triangle on ij in that triangulation
 };
 
 }  // namespace collarmesh::constrained

@@ -23,7 +23,8 @@ constexpr double share_around = 0.75;
 constexpr std::size_t fewest_in_ring = 8, most_in_ring = 24;
 // The smallest angle of tets, a little above the bound on thin tets, degrees.
 constexpr double least_angle = 8.2;
-// Shares of the tolerance that the measured distance of the patch from chords around the rod may reach.
+// Shares of the tolerance that the measured distance of the patch from chords around a straight rod may
+// reach, and around a bent one.
 constexpr double share_measured = 0.95, share_measured_of_bent = 0.6;
 constexpr std::size_t rays_of_section = 16, most_sections = 200'000, fewest_rings_of_loop = 8;
 constexpr double step_in_radii = 1, rays_per_radius = 8;
@@ -228,8 +229,8 @@ bool Rod::finish_at_end() {
   return set_directions();
 }
 
-/// Begins at the middle of a chord along any normal. This chord and the shortest one through its middle span
-/// the section.
+/// Begins at the middle of a chord of the body along any normal of the patch. This chord and the shortest one
+/// through its middle span the section.
 bool Rod::begin_loop(RodSection& first) const {
   constexpr unsigned directions = 48;
   const auto [a, b, c] = hierarchy_->corners(0);
@@ -319,7 +320,7 @@ bool Rod::set_in_ring(std::size_t vertices) {
   return in_ring_ <= most_in_ring;
 }
 
-/// Returns the curvature of the axis after a section, or before the last one.
+/// Returns the curvature of the axis after a section; for the last section, the curvature before it.
 double Rod::bend_after(std::size_t section) const {
   const std::size_t i = std::min(section, sections_.size() - 2);
   const double length = distance(sections_[i].centre, sections_[i + 1].centre);
@@ -358,7 +359,7 @@ bool Rod::is_bent() const {
   });
 }
 
-/// Returns whether the patch is as near to the chords around the rod as the tolerance asks, in some of the
+/// Returns whether the patch is as near to the chords around the rod as the tolerance asks. Tests some of the
 /// sections.
 bool Rod::chords_keep_tolerance() const {
   constexpr std::size_t looked_at = 40, places = 4;

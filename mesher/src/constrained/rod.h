@@ -49,12 +49,13 @@ class Rod {
   bool find_vertices_around();
   /// Changes the number of vertices in a ring. Returns whether it is not too large.
   bool set_in_ring(std::size_t vertices);
-  /// Finds how far apart rings are, after `find_vertices_around`: at most this many radii, and so that edges
-  /// along a bent axis take this share of the tolerance. The number of distances is a multiple of `times`.
+  /// Finds how far apart rings are, after `find_vertices_around`: at most this many radii, and so near that
+  /// edges along a bent axis take at most this share of the tolerance. The number of distances is a multiple
+  /// of `times`.
   void find_spacing(double most_radii = INFINITY, double share_along = 0.1, std::size_t times = 1);
-  /// Finds the vertices of all rings. With a pattern around the rod that looks the same after each of
-  /// `parts_of_turn` parts of a turn, rings are turned so that the pattern fits where a ring closes. Returns
-  /// whether there are any.
+  /// Finds the vertices of all rings. If a pattern around the rod looks the same after each of
+  /// `parts_of_turn` parts of a turn, the rings of a closed rod are turned so that the pattern fits where the
+  /// rod closes. Returns whether all were found, including the vertices of the complex at the ends.
   bool find_rings(std::size_t parts_of_turn);
 
   /// Returns whether the faces between rings are as near to the patch as the tolerance asks.
@@ -84,12 +85,12 @@ class Rod {
   std::size_t steps() const { return steps_; }
   /// Returns the rings' vertices; a closed rod does not repeat the first ring.
   const std::vector<std::vector<Point>>& rings() const { return rings_; }
-  /// Returns a point on the axis in the middle between any two rings.
+  /// Returns the points on the axis in the middle between neighbouring rings.
   const std::vector<Point>& axis() const { return axis_; }
   /// Returns the number of parts of a turn by which the first ring lags behind the ring after the last one.
   std::size_t shift() const { return shift_; }
-  /// Returns the place after a share of the rings, from 0 at the first one to 1, with its frame turned to the
-  /// first vertex of a ring there.
+  /// Returns the section at a share of the rings (0: the first ring, 1: the last one). Turns its frame so
+  /// that a ring there has its first vertex in the direction `across`.
   RodSection frame_at(double share) const;
   TetMesh::VertexFeature feature_of(std::size_t ring, const Point& point) const;
 

@@ -16,8 +16,9 @@ namespace {
 
 constexpr double whole_turn = 2 * std::numbers::pi;
 
-/// A circle of vertices around the axis, as seen along it. Even layers have vertices in the planes of rings,
-/// odd ones in the middle between them. So three vertices of two neighbouring layers never lie in one plane.
+/// Circles of vertices around the axis, all of the same radius. Even layers have circles in the planes of
+/// rings, odd ones in the middle between these planes. So, except at the ends, no plane across the axis has
+/// vertices of two neighbouring layers.
 struct Layer {
   std::size_t count;
   double radius;  // in radii of the rod
@@ -41,15 +42,15 @@ double sheath_spacing(std::size_t in_ring) {
 }
 // Shares of the tolerance for edges along a bent rod. The first one that keeps the tolerance is used.
 constexpr std::array<double, 3> shares_along{0.35, 0.2, 0.1};
-// Rods whose axis bends more than this over the width of the sheath have none.
+// Rods whose axis turns by more than this angle (radians) over the reach of the sheath get no sheath.
 constexpr double sharpest_bend = 0.2;
-// The distance of points on the axis, times the width of the sheath.
+// The distance of seeds on the axis, relative to the reach of the sheath.
 constexpr double between_points = 2;
 
 /// Adds the tets of a rod and its sheath to a mesh.
 class SheathFilling {
  public:
-  /// `rings`: the number of distances between rings for each one between the vertices of other layers.
+  /// `rings`: the number of steps from ring to ring for each step along the other layers.
   SheathFilling(const Rod& rod, std::size_t rings, SheathedRod& made)
       : rod_(rod),
         rings_(rings),
@@ -68,8 +69,8 @@ class SheathFilling {
     mesh_.tet_thin.assign(mesh_.tets.size(), 0);
   }
 
-  /// Returns the number of parts of a turn after each of which the layers look the same. Every second vertex
-  /// of the outermost layer is alike.
+  /// Returns the number of parts of a turn after each of which the layers look the same. In the outermost
+  /// layer only every second vertex is alike.
   static std::size_t parts_of_turn(std::size_t in_ring) {
     std::size_t parts = in_ring;
     for (const Layer& layer : layers_around(in_ring)) parts = std::gcd(parts, layer.count);
@@ -77,7 +78,7 @@ class SheathFilling {
   }
 
  private:
-  // Every second vertex of the outermost layer is moved along by this share of the distance of rings.
+  // Every second vertex of the outermost layer is moved along the rod by this share of the distance of rings.
   // Otherwise the corners of the skin's quadrilaterals would lie on circles, and Delaunay tetrahedra beside
   // it might have either diagonal.
   static constexpr double shifted = 0.15;
@@ -93,9 +94,9 @@ class SheathFilling {
     return levels(layer) * steps_ + (is_between_rings(layer) ? 1 : 0);
   }
 
-  /// Returns a vertex. Levels of layers in the planes of rings begin with 0 in that of the first ring; those
-  /// of layers between them are 1 to the number of steps, and there 0 and the last one lie in the planes of
-  /// the ends. Levels of rods that are closed go on beyond the ends.
+  /// Returns a vertex. A layer in the planes of rings has level 0 at the first ring. A layer between these
+  /// planes has level 1 in the middle of the first step; its level 0 and its last level lie in the planes of
+  /// the ends. In a closed rod, levels beyond the first or the last one wrap around.
   Index at(std::size_t layer, std::size_t level, std::size_t k) const {
     const std::size_t n = count(layer);
     if (is_loop()) {
@@ -209,8 +210,8 @@ class SheathFilling {
     const auto a = [&](std::size_t level) { return at(pair, level, k); };
     const auto b = [&](std::size_t level) { return at(pair, level, k + 1); };
     const auto o = [&](std::size_t level) { return at(apex, level, of_apex); };
-    // Between two levels of the pair: a pyramid. At a level of the pair: tets with edges from one apex to the
-    // next one.
+    // Between two levels of the pair lies a pyramid, which is cut into two tets; at a level of the pair, a
+    // tet between one apex and the next.
     if (is_apex_between) {
       const std::size_t by_step = levels(pair);
       for (std::size_t j = 0; j < steps_ * by_step; ++j)
@@ -296,7 +297,7 @@ Index host_of(const Plc& plc, const RodEnd& end, Index smooth, Index around) {
   return host;
 }
 
-/// Finds the rod that is a region, and its ends. Returns whether it is one.
+/// Returns whether a region is a rod that can have a sheath, and finds its ends.
 bool find_rod(const Plc& plc, Rod& rod, double size, SheathedRod& made) {
   if (!rod.begin()) return false;
   made.region = rod.region();
@@ -317,8 +318,8 @@ bool find_rod(const Plc& plc, Rod& rod, double size, SheathedRod& made) {
          rod.find_vertices_around();
 }
 
-/// Finds the rings of a rod. Returns the number of distances between rings for each one in other layers; 0 if
-/// no rings keep the tolerance.
+/// Finds the rings of a rod. Returns the number of steps from ring to ring for each step along the other
+/// layers; 0 if no rings keep the tolerance.
 std::size_t find_rings(Rod& rod) {
   constexpr std::size_t more = 4, most_odd = 12;  // larger odd numbers do not fit to the next layer
   const std::size_t fewest = rod.in_ring();
@@ -336,7 +337,7 @@ std::size_t find_rings(Rod& rod) {
   return 0;
 }
 
-/// Finds the axis and points along it.
+/// Finds the axis and the seeds on it.
 void trace_axis(const Rod& rod, SheathedRod& made) {
   const std::size_t places = 2 * rod.steps();
   const auto centre = [&](double i, std::size_t of) {

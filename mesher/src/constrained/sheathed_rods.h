@@ -12,8 +12,8 @@
 
 namespace collarmesh {
 
-/// A rod inside another region, with tetrahedra in it and in a sheath around it, whose outside has edges as
-/// long as the distance of rings.
+/// A rod inside another region, with tetrahedra in the rod and in a sheath around it. Edges on the outside of
+/// the sheath are as long as the distance of rings.
 struct SheathedRod {
   /// An end of the rod on a planar patch of the region around it.
   struct End {

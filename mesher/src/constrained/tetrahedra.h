@@ -25,7 +25,7 @@ class Tetrahedra {
   };
 
   /// The tetrahedra around an edge ab, in order: tetrahedron i has the corners a, b, link[i] and link[i + 1];
-  /// for the last one, link[0] follows.
+  /// the last one has link[0] in place of link[i + 1].
   struct Ring {
     std::vector<Index> tets, link;
   };

@@ -17,10 +17,11 @@ namespace {
 // The lowest quality of tets that first steps may make.
 constexpr double least_quality_on_way = 0.02;
 constexpr unsigned most_detours = 30;
-// Number of operations that are tried before the first detour is taken, and its increase with each detour
+// Largest number of operations to try before the first detour is taken, and its increase with each detour
 // taken.
 constexpr std::size_t first_trials = 2000, trials_per_detour = 200;
-// Most proposals for tets with angles near 180 degrees, each of which costs as much as several trials.
+// Largest number of proposals for tets with angles near 180 degrees, each of which costs as much as several
+// trials.
 constexpr std::size_t most_obtuse = 2000;
 constexpr double least_detour_gain = 1e-3, rounding = 1e-9;
 

@@ -47,7 +47,8 @@ class Detours {
     double worst = 0;        ///< smallest quality of the changed tets, at most the wanted quality
   };
   /// Where the first steps for a tet are tried. at_tet: at the tet itself; beside: at the tets across its
-  /// faces and edges; last_resort: at all of these, accepted even if more tets are thin and some stay poor.
+  /// faces and edges; last_resort: at all of these tets; detours are then accepted even if more tets become
+  /// thin and some stay poor.
   enum class Effort : std::uint8_t { at_tet, beside, last_resort };
   /// By tet: the number of detours taken before it was last tried, plus 1; 0: not tried.
   using Asked = std::vector<std::uint32_t>;

@@ -18,7 +18,7 @@ namespace remeshing::improvement {
 
 /// Divides curve edges, which no other operation does: inserts a vertex in the middle of the longest curve
 /// edge of each tet whose angles miss their bounds, if that edge is much longer than other edges of the tet.
-/// Tets may have poor shapes afterwards and should be improved. Returns the number of vertices.
+/// Tets may have poor shapes afterwards and should be improved. Returns the number of inserted vertices.
 std::size_t divide_curves_at_poor_tets(EditableMesh& edited, const Bounds& bounds);
 
 /// Gives each tet a corner inside a region, in a mesh that will be coarsened and improved: removes an edge,

@@ -49,7 +49,7 @@ class OperationChooser {
 
  private:
   // Returns whether the vertex is known to stay. Whether a move helps depends only on the tets at the vertex,
-  // and each of them would propose it.
+  // so it is not tried again for each of these tets.
   bool stays(Index vertex) const { return vertex < stays_.size() && stays_[vertex]; }
   void set_stays(Index tet, bool stays);
 

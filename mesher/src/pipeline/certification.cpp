@@ -30,7 +30,7 @@ std::size_t count_misshapen(const MeshJob& job, const TetMesh& mesh) {
                                    job.execution());
   const auto poor = static_cast<std::size_t>(std::ranges::count_if(report.findings, is_about_shape));
   // Do not count findings on the places of nodes: these are exact only when the mesh is finished.
-  constexpr std::size_t worse = 1000;  // weight relative to a tet
+  constexpr std::size_t worse = 1000;  // weight of a missing image, relative to a poor tet
   CheckReport of_pairs;
   checks::check_periodic(mesh, of_pairs);
   return poor +

@@ -16,7 +16,7 @@ bool misses_volumes_only(const CheckReport& check);
 /// number of nodes, edges and faces of periodic pairs that have no image.
 std::size_t count_misshapen(const MeshJob& job, const TetMesh& mesh);
 
-/// Checks the mesh against the bounds that the options ask for, and within the tolerance of its complex.
+/// Checks the mesh against the bounds that the options ask for and against this tolerance of its complex.
 void certify(MeshJob& job, const SurfaceTolerance& tolerance);
 
 }  // namespace collarmesh::pipeline

@@ -7,7 +7,7 @@ namespace collarmesh::pipeline {
 
 namespace {
 
-/// Returns the numbers of the features that are kept, and sets their new ones.
+/// Returns the numbers of the features that are kept, and sets their new numbers.
 std::vector<Index> kept(const std::vector<bool>& dropped, std::vector<Index>& numbers) {
   std::vector<Index> kept;
   numbers.assign(dropped.size(), none);

@@ -9,15 +9,15 @@
 
 namespace collarmesh::pipeline {
 
-/// A complex in which the regions around rods fill these, with vertices along their axes. Features are
-/// numbered anew.
+/// A complex in which the regions around rods extend into the rods, with vertices along the axes of the rods.
+/// Features are numbered anew.
 struct ComplexWithoutRods {
   Plc plc;
   /// By feature of this complex: the feature of the whole one; none for the vertices on axes.
   std::vector<Index> vertex_of, curve_of, patch_of, region_of;
   std::vector<Index> triangle_of;  ///< by triangle, likewise
 
-  /// Returns a tolerance of the whole complex for this one.
+  /// Returns the tolerance of this complex that corresponds to one of the whole complex.
   SurfaceTolerance tolerance_from(const SurfaceTolerance& whole) const;
 };
 

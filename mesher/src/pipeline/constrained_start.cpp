@@ -26,7 +26,7 @@ namespace collarmesh::pipeline {
 
 namespace {
 
-// A mesh with a larger share of tets that miss their bounds is not worth further work.
+// If more than one in this many tets misses its bounds, a mesh is not worth further work.
 constexpr std::size_t tets_per_poor = 50;
 
 /// Returns whether a thin tet, or a tet in a collar, has a larger angle than thin tets may have.
@@ -55,7 +55,7 @@ bool has_one_size(const MeshOptions& asked, const Plc& plc) {
 }
 
 /// Returns whether ladders may help: in shells far thinner than the size, if one size is asked for
-/// everywhere, because the rungs are divided to that size and not further.
+/// everywhere, because ladders are divided to that size and not further.
 bool may_have_ladders(const MeshJob& job, double size) {
   return has_one_size(job.options.mesh, *job.plc) && !job.given.periodic.any() &&
          has_thin_shells(*job.plc, *job.refined_with.bounds.tolerance, size);

@@ -32,8 +32,8 @@ void tetrahedralize(MeshJob& job);
 /// bounds. With Hope::good, throws Hopeless if many tets miss them.
 void settle(MeshJob& job, Hope hope);
 
-/// Mends flat tets of a refined and coarsened mesh that miss their bounds, by dividing edges at vertices that
-/// face each other. Keeps the result if fewer tets miss them.
+/// Mends flat tets of a refined and coarsened mesh that miss their bounds, by dividing edges so that vertices
+/// face each other. Keeps the result if fewer tets miss their bounds then.
 void mend_flat_tets(MeshJob& job);
 
 }  // namespace collarmesh::pipeline

@@ -14,7 +14,7 @@ namespace collarmesh {
 namespace {
 
 constexpr double most_of_a_volume = 0.02;           // share that a region may lose or gain
-constexpr double most_of_all_in_thin_ones = 0.005;  // share of the total volume that may vanish in thin ones
+constexpr double most_of_all_in_thin_ones = 0.005;  // share of all volume that may vanish in thin regions
 
 struct Body {
   double volume = 0, area = 0;

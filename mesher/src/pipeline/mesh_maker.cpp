@@ -150,8 +150,8 @@ bool MeshMaker::take_sheathed_rods() {
   return false;
 }
 
-/// Makes a mesh with sheaths around rods. Removes the rods that have no sheath in it. Returns whether every
-/// guarantee holds.
+/// Makes a mesh with sheaths around rods. Removes from the list the rods that get no sheath. Returns whether
+/// every guarantee holds.
 bool MeshMaker::is_good_with_sheaths(std::vector<SheathedRod>& rods) {
   try {
     std::vector<Index> fixed;
@@ -199,8 +199,8 @@ bool MeshMaker::refines_with_few_vertices() {
   return true;
 }
 
-/// Returns whether a refinement made many times the predicted number of tets, as thin parts cause. Coarsening
-/// such a mesh takes far longer than starting with constrained tetrahedra.
+/// Returns whether a refinement made many times the predicted number of tets, as it does at thin parts.
+/// Coarsening such a mesh takes far longer than starting with constrained tetrahedra.
 bool MeshMaker::is_far_too_fine() const {
   constexpr double times = 15, least = 60'000;
   const auto tets = static_cast<double>(job_.made.result.mesh.tets.size());
@@ -347,7 +347,7 @@ void MeshMaker::move_to(const Plc& plc) {
 void MeshMaker::come_nearer(const Plc& plc, double share) { nearer_ = tolerance(plc, 1).scaled(share); }
 
 void MeshMaker::come_nearer(const Plc& plc, const std::vector<double>& shares) {
-  constexpr double as_near = 1.2;  // ratio of the tolerances of two sides that count as equal
+  constexpr double as_near = 1.2;  // tolerances of two sides count as equal up to this ratio
   const SurfaceTolerance base = nearer_ ? *nearer_ : tolerance(plc, 1);
   struct Wall {
     double least = INFINITY, most = 0;

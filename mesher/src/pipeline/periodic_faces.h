@@ -5,13 +5,13 @@
 namespace collarmesh::pipeline {
 
 /// Returns whether faces are made periodic before coarsening: smooth patches may meet the pairs' patches at
-/// any angle, and the wedges in between need their nodes on both sides.
+/// any angle, and in wedges between them both sides of a pair need the nodes that refinement made there.
 bool begins_with_refined(const MeshJob& job);
 
 /// Makes faces periodic. Takes the nodes of a source mesh, gives the refined mesh these nodes on both sides
-/// of each pair, coarsens it, and makes the triangles of both sides correspond. Then cuts the mesh open
-/// elsewhere, and coarsens and improves the tets on both sides of a pair together. If some tets stay poor,
-/// divides curves there and repeats all this with the new nodes. The source is the coarsened mesh; if
+/// of each pair, coarsens it, and makes the triangles of both sides correspond. Then cuts the mesh open at
+/// other places, and coarsens and improves the tets on both sides of a pair together. If some tets stay poor,
+/// divides curves at these tets and repeats all this with the new nodes. The source is the coarsened mesh; if
 /// `begins_with_refined`, first the refined mesh.
 void make_faces_periodic(MeshJob& job);
 

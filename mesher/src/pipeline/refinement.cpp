@@ -17,8 +17,8 @@ namespace collarmesh::pipeline {
 namespace {
 
 // Factors and reserve for runs with exact geometry: the bounds must still hold after the vertices have moved
-// onto it. The factor on the distance subtracts twice the distance of CAD triangles from the shape (a tenth
-// of the tolerance) and some more.
+// onto it. The factor on the distance leaves room for twice the distance of CAD triangles from the shape (a
+// tenth of the tolerance) and some more.
 constexpr double distance_left = 0.75, ratio_left = 0.99, angle_reserve = 0.05;
 
 // Layers are pushed into the tets, which makes angles worse where walls are one tet apart.
@@ -29,8 +29,9 @@ constexpr double reserve_for_layers = 0.2;
 constexpr double reached_collar_angle = 130;
 
 /// A comparison of the number of vertices of a refinement with the number that its sizes ask for. It is
-/// costly to compute the latter, and whether thin features may cause more. So both are computed only if a
-/// refinement inserts many vertices, and the number only as far as a comparison needs it.
+/// costly to compute the latter number, and to find out whether thin features may cause more vertices. So
+/// both are done only if a refinement inserts many vertices, and the number is computed only as far as a
+/// comparison needs it.
 class VertexCounter {
  public:
   VertexCounter(const MeshJob& job, Fineness fineness) : job_(job), fineness_(fineness) {}

@@ -8,7 +8,7 @@
 
 namespace collarmesh::pipeline {
 
-/// The axes of rods, for distances from these.
+/// The axes of rods, for measuring distances from them.
 class RodAxes {
  public:
   /// Keeps a reference to the rods.
@@ -19,8 +19,8 @@ class RodAxes {
   /// Returns the distance from a point to the axis of one rod.
   double distance(Index rod, const Point& p) const;
 
-  /// Returns whether two places on the axis of a rod that are farther than `along` from each other along it
-  /// are nearer than `across`.
+  /// Returns whether a rod's axis has two places that are farther than `along` from each other along the
+  /// axis, but nearer than `across` in space.
   bool comes_near_itself(Index rod, double along, double across) const;
 
   /// Returns the rods whose axes are nearer to a point than `room` times the reach of their sheath plus
@@ -31,7 +31,7 @@ class RodAxes {
   const std::vector<SheathedRod>& rods_;
   std::vector<Point> points_;
   std::vector<double> along_;       // by point: the length of the axis up to it
-  std::vector<Index> first_point_;  // by rod, and the number of points
+  std::vector<Index> first_point_;  // by rod: its first point; at the end, the number of points
   std::vector<Index> rod_of_;       // by piece of an axis
   std::optional<TriangleHierarchy> pieces_;
   std::vector<Index> common_rod_;  // by node: the rod of all pieces below it, or none

@@ -10,7 +10,7 @@ namespace collarmesh::pipeline {
 
 namespace {
 
-// Size of the pieces of tets that are looked at, in terms of the sheath's reach.
+// Pieces of tets shorter than this, relative to the sheath's reach, are not halved again.
 constexpr double between_places = 0.4;
 
 /// Returns the corners of a tet's face opposite a corner, with the normal away from the tet.

@@ -50,7 +50,7 @@ class RodCavity {
   RodCavity(MeshAroundRods& around, Index rod, double room);
 
   const std::vector<Index>& tets() const { return tets_; }
-  /// Returns the faces on patches that the cavity takes.
+  /// Returns the mesh faces of tets in the cavity. They lie on the patches that host the rod's ends.
   const std::vector<Index>& faces() const { return faces_; }
   const std::vector<Wall>& walls() const { return walls_; }
   /// Returns the edges around the faces of the cavity on planar patches, by patch of the whole complex.

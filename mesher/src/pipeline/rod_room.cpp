@@ -52,8 +52,8 @@ class OtherFeatures {
     common_owner_ = pieces_->common_labels(owner_);
   }
 
-  /// Returns whether another feature is nearer to a point on the axis of a rod than this. `hosts`: patches
-  /// that do not count.
+  /// Returns whether another feature is nearer to a point on the axis of a rod than this bound. `hosts`:
+  /// patches that do not count.
   bool is_within(double bound, const Point& p, Index rod, const std::vector<Index>& hosts) const {
     const double squared = bound * bound;
     return pieces_->squared_distance_to(

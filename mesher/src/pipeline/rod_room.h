@@ -9,8 +9,8 @@
 namespace collarmesh::pipeline {
 
 /// Removes the rods whose sheaths are so near to other features of the complex, or to the sheath of an
-/// earlier rod, that the tets around them would touch these. If cancelled, removes all. Cost: near linear in
-/// the features plus the length of the axes.
+/// earlier rod, that tets around the sheath would touch these features or that sheath. If cancelled, removes
+/// all. Cost: near linear in the features plus the length of the axes.
 void remove_rods_without_room(const Plc& plc, std::vector<SheathedRod>& rods, const Execution& execution);
 
 }  // namespace collarmesh::pipeline

@@ -20,8 +20,8 @@ namespace collarmesh::pipeline {
 
 namespace {
 
-// Widths of the cavity for a sheath, in terms of the sheath's. Rounded points decide whether one can be
-// filled.
+// Widths of the cavity for a sheath, relative to the sheath. Rounding of points decides whether a cavity can
+// be filled.
 constexpr std::array<double, 3> rooms{1.4, 1.6, 1.8};
 
 /// Puts rods and sheaths into a mesh, in the place of the tets of their cavities.
@@ -211,7 +211,7 @@ bool fill_in_some_room(const Plc& plc, MeshAroundRods& around, Index rod, RodFil
 }
 
 /// Puts rods into the refined mesh of the complex without them. Returns whether there is room for all; if
-/// not, removes those without. Does nothing if cancelled.
+/// not, removes the rods without room. Does nothing if cancelled.
 bool insert_rods(const Plc& plc, const ComplexWithoutRods& without, std::vector<SheathedRod>& rods,
                  TetMesh& mesh, std::vector<Index>& fixed, const Execution& execution) {
   MeshAroundRods around(mesh, without, rods);
@@ -236,8 +236,8 @@ bool insert_rods(const Plc& plc, const ComplexWithoutRods& without, std::vector<
   return true;
 }
 
-/// Refines the complex without rods, as the job's. Tets that make room for sheaths, and those beside them,
-/// are about as large as these, so that they reach no other features.
+/// Refines the complex without rods in place of the job's complex. Tets where sheaths will be, and beside
+/// them, get about the size of the sheaths, so that cavities touch no other features.
 void refine_without(MeshJob& job, const ComplexWithoutRods& without, const std::vector<SheathedRod>& rods,
                     Fineness fineness) {
   // In terms of the sheath's reach: the size there, and the distance from the axis up to which it holds.
@@ -266,11 +266,11 @@ void refine_without(MeshJob& job, const ComplexWithoutRods& without, const std::
     throw;
   }
   restore();
-  job.neighbours = KnownNeighbours();  // they know other features
+  job.neighbours = KnownNeighbours();  // they belong to the complex without rods
 }
 
-/// Returns whether all tets of a rod and its sheath keep the bounds on the angles of thin tets. Tets
-/// between rings that are near each other, as in a bend, and layers that are far apart miss them.
+/// Returns whether all tets of a rod and its sheath keep the bounds on the angles of thin tets. Tets miss
+/// them where rings are near each other, as in a bend, but layers are far apart.
 bool keeps_angles(const TetMesh& mesh, double thin_angle) {
   return std::ranges::all_of(mesh.tets, [&](const std::array<Index, 4>& tet) {
     const auto& p = mesh.points;

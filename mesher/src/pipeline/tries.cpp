@@ -26,8 +26,8 @@ namespace collarmesh::pipeline {
 
 namespace {
 
-/// Sets the size with which features are compared, and the tags of patches and curves that have sizes. No
-/// feature is collapsed where sizes depend on the place.
+/// Sets the size with which features are compared, and the tags of patches and curves that have sizes. Sets
+/// nothing if there is a size field, so that no feature is collapsed.
 void find_feature_size(const MeshOptions& mesh, RepairOptions& repair) {
   if (mesh.size_field) return;
   double size = mesh.size;
@@ -413,7 +413,7 @@ double Tries::largest_loss(const Plc& plc, std::vector<double>* shares) const {
 }
 
 /// If nothing but volumes and thicknesses misses its limit, makes the mesh again, nearer to the smooth
-/// patches where they do. Returns whether every guarantee holds then.
+/// patches of the regions and walls that miss it. Returns whether every guarantee holds then.
 bool Tries::come_nearer_where_missed(const Plc& plc) {
   constexpr double least = 0.25;
   PipelineResult& made = job_.made;

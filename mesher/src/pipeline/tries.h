@@ -13,8 +13,8 @@
 
 namespace collarmesh::pipeline {
 
-/// Tries repairs, seeds and treatments of narrow places one after the other, until a mesh keeps every
-/// guarantee. The job keeps the best mesh.
+/// A sequence of tries: repairs, seeds and treatments of narrow places, one after the other, until a mesh
+/// keeps every guarantee. The job keeps the best mesh.
 class Tries {
  public:
   /// Keeps a reference to the job. `source` makes the complexes; null if there is only one.

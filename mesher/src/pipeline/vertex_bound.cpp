@@ -23,12 +23,13 @@ double area_of(const Plc& plc, Index triangle) {
   return 0.5 * norm(cross(plc.points[b] - plc.points[a], plc.points[c] - plc.points[a]));
 }
 
-/// Returns the patch's area in squares whose side is the size or, if shorter, a chord that keeps the
-/// tolerance.
+/// Returns how many squares have the patch's area. The side of a square is the size or, if that is shorter,
+/// the longest chord that keeps the tolerance.
 double squares_on(const Plc& plc, const Plc::Patch& patch, double size, const SurfaceTolerance& tolerance) {
   const std::vector<Curvature> curvature =
       patch.planar ? std::vector<Curvature>(patch.triangle_count) : curvatures(plc, patch);
-  constexpr double most_per_square = 1. / 16;  // limit for folds, where the surface turns very sharply
+  constexpr double most_per_square = 1. / 16;  // smallest area of a square, relative to that of the size: a
+                                               // limit for folds, where the surface turns very sharply
   double squares = 0;
   for (Index i = 0; i < patch.triangle_count; ++i) {
     const Index t = patch.first_triangle + i;
@@ -91,7 +92,7 @@ double expected_by_features(const Plc& plc, const MeshOptions& options) {
 }
 
 // Returns the factor by which tighter bounds than the defaults increase the number of vertices. Near smooth
-// surfaces it is inversely proportional to the distance.
+// surfaces this number is inversely proportional to the distance.
 double by_bounds(const Plc& plc, const MeshOptions& options) {
   constexpr double power = 4, by_vertex_ratio = 4;
   const double distance =

@@ -24,7 +24,7 @@ class VertexBudget {
   /// Computes the number for a complex with these options, unless it is known.
   void find(const Plc& plc, const PipelineOptions& options);
 
-  /// Returns the number; 0: none, or only the one that the options give.
+  /// Returns this number of vertices; 0: there is no limit, or only the one that the options give.
   std::size_t most() const { return most_; }
   void set_most(std::size_t vertices) { most_ = vertices; }
 

@@ -61,7 +61,8 @@ std::map<Index, double> volume_allowances(const MeshJob& job, const Areas& areas
   return allowed;
 }
 
-/// Lists the nodes of walls that were straightened before there were layers, with their present numbers.
+/// Lists mid-edge nodes of walls again if they were straightened before there were layers. Gives them their
+/// present numbers.
 void keep_straightened(const checks::WallGeometry& before, const checks::WallGeometry& now,
                        const SecondOrderReport& given, SecondOrderReport& made) {
   if (before.mid_nodes.size() != now.mid_nodes.size()) return;  // the walls differ, which the check reports

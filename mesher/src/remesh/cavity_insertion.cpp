@@ -23,7 +23,8 @@ void Operations::insert_in_cavity(Index tet, double least, Change& change) {
   }
 }
 
-// Extends the cavity by the tet behind the worst new tet, as long as that improves the worst new tet.
+// Extends a cavity by the tet behind the worst new tet, as long as that raises the worst quality. Then
+// proposes a vertex in the cavity.
 void Operations::grow_and_insert(std::vector<Index> cavity, double least, Change& change) {
   if (!find_cone_of_cavity(cavity)) return;
   auto [place, quality] = best_place(centre_of_hull(), none, everywhere, -1);
@@ -83,7 +84,8 @@ Point Operations::centre_of_hull() const {
   return first + sum / (3.0 * static_cast<double>(cone_.hull.size()));
 }
 
-// Returns the tet behind the hull face whose tet with this apex is worst; none if that is a face of the mesh.
+// Returns the tet behind the hull face whose tet with this apex is worst; none if that hull face is a face of
+// the mesh.
 Index Operations::beyond_worst_of_hull(const Point& apex) const {
   double worst = INFINITY;
   std::size_t at = 0;

@@ -11,8 +11,8 @@ namespace collarmesh::remeshing {
 
 namespace {
 
-// Narrow places must be narrower than the certificate's by this factor, because vertices move afterwards. If
-// they will move onto exact geometry, the reserve is subtracted, too.
+// Narrow places must be narrower than those of the certificate by this factor, because vertices move
+// afterwards. If vertices will move onto exact geometry, the places must be narrower by the reserve, too.
 constexpr double narrower = 0.98;
 constexpr std::uint8_t star = 1, book = 2;
 

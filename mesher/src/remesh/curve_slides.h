@@ -24,7 +24,7 @@ class CurveSlides {
 
   /// Returns whether this vertex on a curve can move at all.
   bool movable(Index vertex) const;
-  /// Returns the point of the vertex's curve at this arc length ahead of it.
+  /// Returns the point that lies ahead of the vertex on its curve by this arc length.
   Point ahead(Index vertex, double way) const;
   /// Returns whether the vertex may slide by this arc length.
   bool fits(Index vertex, double way) const;
@@ -90,7 +90,7 @@ class CurveSlides {
   SurfaceTolerance tolerance_;
   CurvePaths paths_;
   mutable std::once_flag prepared_;
-  mutable std::vector<Place> places_;  // by vertex that existed at the first use, when they are computed
+  mutable std::vector<Place> places_;  // by vertex, for those that existed at the first use; computed then
   std::vector<std::ptrdiff_t> spare_edges_;  // by curve: the number of edges above its minimum
   UndoLog<std::vector<Place>> old_places_{places_};
   UndoLog<std::vector<std::ptrdiff_t>> old_spare_edges_{spare_edges_};

@@ -14,8 +14,7 @@ constexpr double flat_volume = 1e-13;
 
 }  // namespace
 
-// Returns the quality of a new tet. A result that is not above `above` counts as worthless, whatever its
-// value.
+// Returns the quality of a new tet; -1 if it is not above `above` or the rule forbids the tet.
 double Operations::new_quality(const std::array<Index, 4>& v, double above) const {
   const auto& points = mesh_.points;
   const Corners p{points[v[0]], points[v[1]], points[v[2]], points[v[3]]};
@@ -23,8 +22,8 @@ double Operations::new_quality(const std::array<Index, 4>& v, double above) cons
   return quality > above && rule_.allows(p, v, quality) ? quality : -1;
 }
 
-// Triangulates the polygon around the edge ab so that the worst of the two tets on each triangle is as good
-// as possible (Klincsek 1980). Cost: the polygon's vertices cubed.
+// Triangulates the polygon around the edge ab. Each triangle makes two tets, with a and with b; the worst of
+// all these tets is as good as possible (Klincsek 1980). Cost: the polygon's vertices cubed.
 double Operations::triangulate(Index a, Index b, const Polygon& polygon, bool closed, double above) {
   const std::size_t n = polygon.size();
   const auto& points = mesh_.points;
@@ -86,7 +85,8 @@ void Operations::remove_edge(Index tet, unsigned i, unsigned j, Change& change,
   if (n > largest_ring || (ring_.closed && m < 3)) return;
   // Finds the link vertices at which faces that must be preserved leave the edge.
   std::vector<std::pair<std::size_t, Index>> kept;
-  // A quality above this tet's is above that of the worst tet at the edge.
+  // A quality above that of this tet is also above that of the worst tet at the edge, which need not be known
+  // then.
   const bool known = anyhow_above || (!change.is_none() && change.quality >= quality(tet));
   double worst = known ? -INFINITY : INFINITY;
   for (std::size_t k = 0; k < n; ++k) {
@@ -176,7 +176,7 @@ bool Operations::may_turn(Change& change) {
   change.read.insert(change.read.end(), star_.begin(), star_.end());
   if (complex_.on_faces(shared[0], shared[1])) return false;
   const Index patch = mesh_.face_patch[turned[0].like];
-  if (plc_.patches[patch].planar) return true;  // the volumes of the tets have already decided
+  if (plc_.patches[patch].planar) return true;  // positive volumes of the new tets suffice on a plane
   faces_.clear();
   for (const TetComplex::NewFace& face : turned)
     faces_.push_back(

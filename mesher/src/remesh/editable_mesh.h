@@ -38,9 +38,9 @@ struct Change {
 };
 
 /// A mesh that changes step by step, with the smooth surfaces and curves that its faces and edges
-/// approximate: what coarsening, improvement, adaptation and the replacement of tets have in common. They
-/// choose changes by `Operations` under a `ShapeRule` and apply them, for good or in a `Trial`; `store`
-/// writes the tets back in the end. Several threads may read it while no change is applied.
+/// approximate. Coarsening, improvement, adaptation and the replacement of tets work on it: they choose
+/// changes by `Operations` under a `ShapeRule` and apply them, for good or in a `Trial`; `store` writes the
+/// tets back in the end. Several threads may read it while no change is applied.
 class EditableMesh {
  public:
   /// Keeps the mesh and the complex by reference. Curves that turn by half a circle or more keep

@@ -32,24 +32,24 @@ class Operations {
   /// but all new tets must be better than this.
   void remove_edge(Index tet, unsigned i, unsigned j, Change& change,
                    std::optional<double> anyhow_above = {});
-  /// Removes the edge of a tet whose removal leaves the best tets.
+  /// Removes an edge of a tet: the one whose removal leaves the best tets.
   void remove_best_edge(Index tet, Change& change);
   /// Removes an edge of a tet and another edge beside it by filling the space of all tets at both edges
   /// again. Helps where removing a single edge leaves inverted tets, as between two prisms of a thin wall.
   void reconnect(Index tet, Change& change);
   /// Moves a vertex within its feature to a place where the worst tet around it is better.
   void move_vertex(Index vertex, Change& change);
-  /// Moves a vertex within its patch to where it faces a vertex of a tet around it, if the worst of these
-  /// tets is better then. In thin places only vertices that face each other permit long edges.
+  /// Moves a vertex within its patch to a place where it faces another vertex of its tets, if the worst of
+  /// these tets becomes better. In thin places only vertices that face each other permit long edges.
   void move_to_face(Index vertex, Change& change);
   /// Inserts a vertex on an edge inside a region or a patch, at the best place, if the tets around it are all
   /// better than `least`.
   void split_edge(Index a, Index b, double least, Change& change);
   /// Inserts a vertex like `split_edge`, even if the tets at the edge are better now.
   void split_edge_anyhow(Index a, Index b, double least, Change& change);
-  /// Inserts a vertex inside a region. Removes a tet or all tets at one of its edges, and as many around them
-  /// as make the worst new tet better, and fills the cavity from the vertex. Does so only if all new tets are
-  /// better than `least` and than `change`.
+  /// Inserts a vertex inside a region. Removes a tet or all tets at one of its edges, then further tets
+  /// beside them as long as that makes the worst new tet better, and fills the cavity from the vertex. Does
+  /// so only if all new tets are better than `least` and than `change`.
   void insert_in_cavity(Index tet, double least, Change& change);
   /// Inserts a vertex on an edge with any number of tets, if all new tets are better than `least`: inside a
   /// region or in a patch at this share of the edge's length or, if that fails, at the best place; on a curve
@@ -61,7 +61,7 @@ class Operations {
   /// tets at the edge vanish. `anyhow_above`: as for `remove_edge`.
   void collapse_edge(Index vertex, Index onto, Change& change, std::optional<double> anyhow_above = {},
                      Lengths lengths = Lengths::no_longer);
-  /// Collapses the edge of a tet whose collapse leaves the best tets.
+  /// Collapses an edge of a tet: the one whose collapse leaves the best tets.
   void collapse_best_edge(Index tet, Change& change, Lengths lengths = Lengths::no_longer);
 
   /// Begins queries about collapses of edges at this vertex, whose star is given. Returns false if the vertex
@@ -75,7 +75,7 @@ class Operations {
   double worst_at_vertex() { return worst_at_vertex(vertex_); }
 
  private:
-  /// Largest number of tets around an edge: operations at edges with more hardly ever improve them.
+  /// Largest number of tets around an edge: operations at edges with more tets hardly ever help.
   static constexpr std::size_t largest_ring = 9;
 
   static constexpr std::size_t all_passed = SIZE_MAX;
@@ -89,7 +89,7 @@ class Operations {
   };
   static constexpr Freedom everywhere{{Vector{1, 0, 0}, Vector{0, 1, 0}, Vector{0, 0, 1}}, 3, none};
   /// A cavity and its apex, a present or a future vertex: each tet and mesh face of the cavity joins the apex
-  /// to a part of its border.
+  /// to a part of the cavity's border.
   struct Cone {
     std::vector<Index> tets;
     double worst = INFINITY;                 ///< worst quality of the tets; infinite if not known yet

@@ -14,7 +14,7 @@ namespace collarmesh::remeshing {
 
 namespace {
 
-// A replacement is not tried if it makes a tet worse than this share of the bound.
+// A replacement is not tried if it makes a tet worse than this share of `least_quality`.
 constexpr double mendable = 0.15;
 constexpr unsigned most_repairs = 16;
 

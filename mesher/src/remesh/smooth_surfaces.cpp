@@ -122,8 +122,8 @@ bool SmoothSurfaces::edge_near(Index patch, const Point& a, const Point& b, Inde
          triangle_near(patch, (a + 2 * b) / 3, near_b) != none;
 }
 
-// Tests the edges of new faces. Edges that the old faces have are as near as before. An edge that two faces
-// share is tested once.
+// Tests the edges of the created face i. Skips edges of the old faces, which are as near as before, and edges
+// of created faces before i, which have been tested.
 bool SmoothSurfaces::edges_near(std::span<const Index> old, std::span<const Face> created, std::size_t i,
                                 Index hint) const {
   const auto has_edge = [](const Triangle& t, const Point& a, const Point& b) {
@@ -154,8 +154,8 @@ double SmoothSurfaces::squared_distance(Index patch, const Triangle& t) const {
   return largest;
 }
 
-// Returns whether each sample of the old faces is within its tolerance, or within the bound if that is
-// larger, of a created face.
+// Returns whether each sample of the old faces is near a created face: within the sample's tolerance or the
+// bound, whichever is larger.
 bool SmoothSurfaces::samples_are_near(std::span<const Index> old, std::span<const Face> created,
                                       double least_squared_bound) const {
   std::size_t last = 0;  // try first the face of the last point
@@ -196,7 +196,7 @@ bool SmoothSurfaces::are_excused(std::span<const Index> old, std::span<const Fac
   return near && (beyond || samples_are_near(old, created, accepted));
 }
 
-// Returns the cosine of the angle between a face and a triangle of the patch, regardless of orientation.
+// Returns the cosine of the angle between the normals of a face and of a triangle of the patch.
 double SmoothSurfaces::agreement(Index patch, const Triangle& t, Index triangle) const {
   const Vector n = normal(t), m = normal(triangles(patch).corners(triangle));
   const double lengths = norm(n) * norm(m);

@@ -108,8 +108,8 @@ class SmoothSurfaces {
   bool samples_are_near(std::span<const Index> old, std::span<const Face> created,
                         double least_squared_bound) const;
   bool are_excused(std::span<const Index> old, std::span<const Face> created, bool agree) const;
-  /// Returns the cosine of the angle between a triangle and the nearest one of the patch. Orientations count:
-  /// faces lie like the triangles of their patch.
+  /// Returns the cosine of the angle between the normals of a face and of a triangle of the patch. It is
+  /// negative if they are oriented oppositely; faces should be oriented like the triangles of their patch.
   double agreement(Index patch, const Triangle& t, Index triangle) const;
   double worst_agreement(std::span<const Index> faces) const;
   Triangle corners(Index face) const;

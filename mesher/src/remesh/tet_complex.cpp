@@ -44,7 +44,7 @@ PlcError no_ring(const Point& p) {
   return PlcError(message, {{PlcFault::Kind::intersection, message, {}, p}});
 }
 
-// Mark deleted faces and edges until `store`.
+// Stand for deleted faces and edges until `store`.
 constexpr std::array<Index, 3> lost_face{none, none, none};
 constexpr std::array<Index, 2> lost_edge{none, none};
 
@@ -348,7 +348,8 @@ void TetComplex::make_faces(const Replacement& replacement) {
   }
 }
 
-// Sets a face's index among the mesh's faces for the tets of the last cavity at it.
+// Records the index of a mesh face in the tets at this face: the tets that the last replacement made, and
+// their neighbours.
 void TetComplex::set_face(const std::array<Index, 3>& corners, Index face) {
   const auto key = sorted(corners);
   for (const OpenFace& open : open_)

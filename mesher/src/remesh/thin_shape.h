@@ -217,7 +217,8 @@ class ThinShape {
 
  private:
   // The sine of 1.7 degrees. Where forced edges permit smaller angles only, operations judge a tet by what
-  // the edges permit. They judge all others as if no edge were forced, although their bound may be lower.
+  // the edges permit. They judge all other tets as if no edge were forced, although forced edges may lower
+  // the bounds of these tets, too.
   static constexpr double deep = 0.03;
   // Largest squared margin that forced edges can give a tet.
   static constexpr double good_enough = 2;

@@ -182,7 +182,7 @@ bool Operations::may_be_made(const Point& apex, const std::array<Index, 4>& corn
   return rule_.allows(with_apex(apex, corners), corners, quality);
 }
 
-// Returns whether the rule allows the edges to the vertices around when the vertex moves.
+// Returns whether the rule allows the edges at a vertex after its move.
 bool Operations::edges_allowed(Index vertex, const Point& from, const Point& to) const {
   const auto& points = mesh_.points;
   for (const auto& face : cone_.hull)

@@ -25,8 +25,7 @@ class PatchCurvature {
     }
   }
 
-  /// Returns the curvatures of each triangle, from those at its corners: the maximum of the larger curvatures
-  /// and the mean of the sums.
+  /// Returns the curvatures of each triangle: the maximum of `largest` and the mean of `sum` at its corners.
   std::vector<Curvature> by_triangle() const {
     std::vector<AtPoint> smooth(points_.size());
     for (Index i = 0; i < patch_.triangle_count; ++i) {

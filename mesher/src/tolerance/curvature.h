@@ -13,12 +13,12 @@ struct Curvature {
                        ///< that its normals point to
 };
 
-/// Returns the curvatures of a patch by its triangles, from the curvature tensor of its tessellation averaged
-/// over the triangles around each point (Cohen-Steiner and Morvan: Restricted Delaunay triangulations and
-/// normal cycle, 2003). Cost: linear.
+/// Returns the curvatures of a patch at each of its triangles, from the curvature tensor of its tessellation
+/// averaged over the triangles around each point (Cohen-Steiner and Morvan: Restricted Delaunay
+/// triangulations and normal cycle, 2003). Cost: linear.
 std::vector<Curvature> curvatures(const Plc& plc, const Plc::Patch& patch);
 
-/// Target edge lengths, absolute, that put N elements on a full circle of the curvature.
+/// Target edge lengths, absolute, with which N elements make a full circle of the local curvature.
 struct CurvatureSizes {
   std::vector<double> triangle;  ///< size at every triangle of the complex; infinite where flat
   std::vector<std::vector<double>> curve_segment;  ///< size at every segment of every curve's polyline

@@ -17,9 +17,9 @@ bool are_neighbours(const Plc& plc, Index patch, Index other);
 double least_facing(bool neighbours);
 
 /// Returns the distance from a point x of a patch to the plane of a triangle, along a unit normal of the
-/// patch; infinite if the triangle does not face the patch. The ray from x in the direction `way` (the normal
-/// or its opposite) crosses the triangle. Patches that meet elsewhere face each other only if they are almost
-/// parallel, because a wedge is no gap.
+/// patch; infinite if the triangle does not face the patch. Precondition: the ray from x in the direction
+/// `way` (the normal or its opposite) crosses the triangle. Neighbouring patches face each other only if they
+/// are almost parallel, because a wedge is no gap.
 double facing_distance(const Plc& plc, Index patch, const Point& x, const Vector& normal, const Vector& way,
                        Index triangle, const std::array<Point, 3>& corners);
 

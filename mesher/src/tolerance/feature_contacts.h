@@ -22,8 +22,8 @@ class FeatureContacts {
 
   const Plc& plc_;
   std::vector<std::vector<Index>> neighbours_;  // by patch: other patches that it meets, sorted
-  std::vector<bool> at_hub_;  // by patch: whether it has a vertex with many patches; `neighbours_` does not
-                              // list these
+  std::vector<bool> at_hub_;  // by patch: whether many patches meet at one of its vertices; `neighbours_`
+                              // does not list these
 };
 
 }  // namespace collarmesh

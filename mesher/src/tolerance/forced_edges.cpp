@@ -50,7 +50,7 @@ ForcedEdges::ForcedEdges(const Plc& plc, std::vector<TetMesh::VertexFeature> fea
       least_cosine_(least_cosine) {
   for (Index f = 0; f < faces.size(); ++f) {
     const auto& [a, b, c] = faces[f];
-    if (a == none) continue;  // the tet was removed from a mesh under improvement
+    if (a == none) continue;  // the face was removed from a mesh under improvement
     const Vector normal = cross(points[b] - points[a], points[c] - points[a]);
     for (const Index v : faces[f])
       if (features_[v].dimension == 2 && features_[v].feature == face_patch[f])

@@ -9,15 +9,15 @@
 
 namespace collarmesh {
 
-/// Returns the width that short edges leave to a tet, relative to its longest edge: the length of the
-/// shortest of them. `forces` accepts the short edges, given by their corners; `across` has for each corner,
-/// as bits, the corners to which they join it. If exactly these edges join two groups of corners, returns the
-/// distance between the planes or lines through the groups: between a corner and a plane, or between two
-/// lines. Returns 1 if there are no short edges.
+/// Returns the width that short edges leave to a tet, divided by the length of its longest edge; 1 if there
+/// are no short edges. The width is the length of the shortest short edge. If the short edges are exactly the
+/// edges between two groups of corners, the width is at most the distance between the groups: from a corner
+/// to the plane of the others, or between two lines. `forces` accepts the short edges, given by their
+/// corners; `across` has for each corner, as bits, the corners to which short edges join it.
 double narrowness_of(const std::array<Point, 4>& p, const std::array<unsigned, 4>& across);
 template <class Forces>
 double narrowness_of(const std::array<Point, 4>& p, const Forces& forces) {
-  std::array<unsigned, 4> across{};  // by corner: the corners, as bits, to which such an edge joins it
+  std::array<unsigned, 4> across{};  // by corner: the corners, as bits, to which short edges join it
   for (unsigned i = 0; i < 4; ++i)
     for (unsigned j = 0; j < i; ++j)
       if (forces(i, j)) {
@@ -29,10 +29,10 @@ double narrowness_of(const std::array<Point, 4>& p, const Forces& forces) {
 
 /// The edges of a mesh that the input forces to be short: they join features that have no point in common, or
 /// places of one patch that face opposite ways. If these are near each other, as on the two sides of a thin
-/// wall, at a step or at a strip, no tet can have both long edges and large angles.
+/// wall, at a step or at a strip, no tet there can have both long edges and large angles.
 class ForcedEdges {
  public:
-  /// The certificate's bound on the cosine between normals: sides are within some 25 degrees of opposite.
+  /// The certificate's bound on the cosine between normals: they may be up to some 25 degrees from opposite.
   static constexpr double least_cosine_of_sides = -0.9;
 
   /// Finds the edges between the current vertices. Keeps a reference to the complex. `features`: by point,

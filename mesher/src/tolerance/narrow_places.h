@@ -15,7 +15,7 @@ namespace collarmesh {
 /// crease, if their distance is below a share of the longest edge there.
 class NarrowPlaces {
  public:
-  /// Keeps a reference to the complex. `forced` must be made of this mesh. Features that meet below
+  /// Keeps a reference to the complex. `forced` must be made from this mesh. Features that meet below
   /// `crease_angle` (degrees) form a crease.
   NarrowPlaces(const Plc& plc, std::vector<TetMesh::VertexFeature> features, ForcedEdges forced,
                double crease_angle, double share);

@@ -38,15 +38,16 @@ constexpr double least_share_in_wedges = 0.018;
 constexpr double slope_beside_wedges = 0.1;
 // The smallest tolerance, relative to the largest one: finer details are not resolved.
 constexpr double least_share = 5e-4;
-// The mean deviation of chords, relative to the tolerance; most chords are nearer than it allows.
+// The mean distance of chords from the surface, relative to the tolerance. Most chords are nearer to the
+// surface than the tolerance allows.
 constexpr double mean_of_sagitta = 0.42;
 constexpr double sizes_per_diagonal = 20;  // as for the default size, see refine/sizing.cpp
 
 class LocalTolerance {
  public:
   enum class Volumes {
-    kept,    // first order: judged by the triangles between corners
-    curved,  // second order: judged by the volume that curved elements enclose
+    kept,    // first order: flat triangles must keep the volumes
+    curved,  // second order: curved elements keep the volumes
     any      // the largest tolerance over all sizes and orders
   };
   LocalTolerance(const Plc& plc, double size)
@@ -98,8 +99,8 @@ class LocalTolerance {
     }
   }
 
-  // Finds the parts of wedges that are thicker than the reach. Only patches that are in a wedge within the
-  // reach need them: where a wedge is thicker throughout, chords remove too little of it to matter.
+  // Finds the thickness of wedges where it exceeds the reach. Skips patches whose wedges are nowhere thinner
+  // than the reach: chords remove too little of such wedges to matter.
   void find_thick_ends_of_wedges() {
     for (const Plc::Patch& patch : plc_.patches) {
       const auto of_patch = std::span(of_wedge_).subspan(patch.first_triangle, patch.triangle_count);
@@ -118,9 +119,9 @@ class LocalTolerance {
     }
   }
 
-  // Keeps the volume of wedges. Where a patch and the opposite side of a thin place meet in a crease, a share
-  // of the thickness would go to zero towards the crease. So the share of the volume below the patch is
-  // limited there instead.
+  // Keeps the volume of wedges. Where a patch and the opposite side of a thin place meet in a crease, a
+  // tolerance that is a share of the thickness would go to zero towards the crease. So the share of the
+  // volume below the patch is limited there instead.
   void keep_wedges() {
     std::vector<double> at_points(plc_.points.size(), INFINITY);
     bool any = false;
@@ -139,8 +140,8 @@ class LocalTolerance {
       for (const Index p : plc_.triangles[t].points) of_gap_[t] = std::min(of_gap_[t], at_points[p]);
   }
 
-  // Returns the tolerance that wedges allow; infinite if a wedge is only a small part of a patch, as at a
-  // fold.
+  // Returns the tolerance that wedges allow; infinite if chords would remove little of the wedges, or if less
+  // than half of the patch is in wedges, as at a fold.
   double allowed_in_wedges(const Plc::Patch& patch) const {
     double all = 0, area = 0, volume = 0;
     for (Index t = patch.first_triangle; t < patch.first_triangle + patch.triangle_count; ++t) {
@@ -155,7 +156,7 @@ class LocalTolerance {
     return largest_ * std::max(share_of_wedge * volume / lost, least_share_in_wedges);
   }
 
-  // Lowers values at points until they grow along edges of triangles by at most this slope.
+  // Lowers values at points until they grow along edges of triangles by at most `slope_beside_wedges`.
   void grow(std::vector<double>& at_points) const {
     using Item = std::pair<double, Index>;
     std::priority_queue<Item, std::vector<Item>, std::greater<>> next;
@@ -218,7 +219,8 @@ class LocalTolerance {
     return boundaries;
   }
 
-  // Returns the parts where chords change the volume that these patches enclose, on their side of a region.
+  // Returns the parts of these patches where chords change the volume that the patches enclose on the side of
+  // this region.
   std::vector<Loss> losses_on(const std::vector<Index>& patches, Index region) const {
     std::vector<Loss> losses;
     for (const Index p : patches) {
@@ -273,7 +275,7 @@ class LocalTolerance {
   double reach_;  // a greater thickness does not lower the tolerance, except in wedges
   Thickness thickness_;
   std::vector<Curvature> curvature_;
-  std::vector<double> of_material_, of_gap_;  // by triangle: tolerances by thickness and gaps
+  std::vector<double> of_material_, of_gap_;  // by triangle: tolerances from thickness and from gap widths
   std::vector<double> of_wedge_;              // by triangle: thickness between patches that meet in a crease
 };
 
@@ -317,7 +319,8 @@ double coarseness(const Plc& plc, const Plc::Patch& patch, const SurfaceToleranc
     Vector normal;
     double height;  // height of the triangle above the edge
   };
-  // A chord of this length between two turns of this angle is off its arc by an eighth of their product.
+  // If a surface turns by this angle from one triangle to the next, a chord as long as the triangle is high
+  // is off its arc by an eighth of the height times the angle.
   const auto relative_distance = [&](const Side& side, double turn) {
     return side.height * turn / 8 / (share_of_triangles * tolerance.at_triangle(side.triangle));
   };

@@ -11,7 +11,7 @@
 namespace collarmesh {
 
 double squares_in_thin_places(const Plc& plc, double thinner_than) {
-  constexpr double least_facing = 0.9;  // walls whose sides meet at a larger angle are no thin places
+  constexpr double least_facing = 0.9;  // sides more than 26 degrees from parallel make no thin place
   const double reach = 1.01 * thinner_than;
   const Thickness thickness(plc);
   std::vector<double> squares(plc.triangles.size(), 0);
