@@ -5,8 +5,8 @@
 
 namespace collarmesh::facets {
 
-/// Adds a fault for each pair of features without a common feature that come closer to each other than the
-/// limit (absolute). Closer points would have been welded, so it is unclear whether the features touch.
+/// Adds a fault for each pair of features that come closer to each other than the limit (absolute) but share
+/// no feature. Points as close would have been welded, so it is unclear whether the features touch.
 /// Precondition: no two features cross. Cost: as that of finding intersections.
 void find_near_touching(const Plc& plc, double limit, Faults& faults);
 

@@ -349,7 +349,8 @@ class AbaqusReader {
     return found->second;
   }
 
-  /// Reads a set. Members are numbers or the names of earlier sets; with GENERATE first, last and step.
+  /// Reads a set. Members are numbers or the names of earlier sets; with GENERATE, a line has the first and
+  /// the last member and the step.
   void read_set(const Keyword& keyword) {
     const std::size_t set = index_of_set(keyword.set);
     sets_[set].named_apart = true;
@@ -559,7 +560,7 @@ class AbaqusReader {
   std::vector<CellPlace> places_;  ///< by element
   std::map<std::string, std::size_t, std::less<>> set_index_;
   std::vector<Set> sets_;
-  std::size_t repeated_members_ = 0;  ///< ranges and names of sets in all sets and surfaces
+  std::size_t repeated_members_ = 0;  ///< members that ranges and names of sets stand for
   std::vector<std::pair<std::string, std::vector<Side>>> surfaces_;
   GroupTags groups_;
 };

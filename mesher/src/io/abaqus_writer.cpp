@@ -35,7 +35,8 @@ namespace {
 
 constexpr std::size_t numbers_a_line = 16, number_width = 20;
 
-/// Returns the shortest text that reads back as the same double, or the most digits that fit.
+/// Returns the shortest text that reads back as the same double, or, if that is too long, as many digits as
+/// fit.
 std::string fitted(double value) {
   std::string text = fmt::format("{}", value);
   for (int digits = 16; text.size() > number_width; --digits) text = fmt::format("{:.{}g}", value, digits);

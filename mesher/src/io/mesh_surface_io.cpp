@@ -43,7 +43,7 @@ std::vector<PolygonSoup::RegionPoint> points_in_regions(const TetMesh& mesh) {
     const Index s = sides[i - 1].second, t = sides[i].second;
     if (sides[i - 1].first == sides[i].first && mesh.tet_tag[s] == mesh.tet_tag[t]) bodies.unite(s, t);
   }
-  std::map<Index, std::pair<double, Index>> largest;  // by body: six volumes, and the tet
+  std::map<Index, std::pair<double, Index>> largest;  // by body: six times the volume, and the tet
   for (Index t = 0; t < mesh.tets.size(); ++t) {
     const auto& [a, b, c, d] = mesh.tets[t];
     const double volume =

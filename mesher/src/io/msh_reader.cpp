@@ -367,7 +367,7 @@ void read_nodes_2(Values values, Contents& contents) {
   sort_nodes(values, contents);
 }
 
-/// Reads the tags of an element: its physical group, its entity and partitions.
+/// Reads the rest of an element: its tags (physical group, entity, partitions), then its nodes.
 template <class Values>
 void read_element_2(Values& values, const GmshType* type, std::uint64_t number, int tags,
                     Contents& contents) {

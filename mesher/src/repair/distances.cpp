@@ -73,7 +73,7 @@ double diagonal_of(std::span<const CornerPoints> triangles) {
   return box.diagonal();
 }
 
-/// The search for the sample outside of a surface that is farthest from it. Winding numbers cost far more
+/// A search for the sample that is farthest from a surface among those outside. Winding numbers cost far more
 /// than distances, so they are only computed for the farthest of many samples. A sample inside has a ball
 /// around it, up to the surface, in which all other samples are inside, too.
 class FarthestOutside {

@@ -37,7 +37,7 @@ bool turned_against(const Corners& a, const Corners& b) {
   return b[(at + 1) % 3] != a[1];
 }
 
-// The largest few of some triangles.
+// The `count` largest triangles of a set.
 class Largest {
  public:
   static constexpr std::size_t count = 24;
@@ -139,7 +139,8 @@ class BoundaryKeeper {
            ascending(sheets_.unique.triangles, sides[0]) != ascending(sheets_.unique.triangles, sides[1]);
   }
 
-  // Finds clusters of sheets connected by edges. A cluster is tangled if any of its edges is not plain.
+  // Finds clusters of sheets connected by edges. A cluster is tangled unless at each of its edges two
+  // triangles of one soup meet, without copies and with consistent orientation.
   void find_clusters() {
     DisjointSets sets(sheets_.size());
     std::vector<bool> tangled(sheets_.size(), false);
@@ -292,7 +293,7 @@ class BoundaryKeeper {
     });
   }
 
-  // A component of space without the triangles that is thinner than `thickness`.
+  // A chamber (a component of space without the triangles) thinner than `thickness`.
   struct ThinChamber {
     Point origin;
     double volume = 0, area = 0;
@@ -320,8 +321,8 @@ class BoundaryKeeper {
     return chambers;
   }
 
-  // Gives each thin chamber the label with which it has the largest common area, beginning beside thick
-  // chambers.
+  // Gives each thin chamber the label of the neighbours with which it has the largest common area. Begins
+  // with thin chambers beside thick ones.
   void give_away_thin_chambers() {
     std::map<Index, ThinChamber> left = thin_chambers();
     while (!left.empty()) {
