@@ -1,7 +1,7 @@
 // Reads the input format of Abaqus and CalculiX (.inp): tetrahedra, prisms and pyramids of solids (C3D4,
 // C3D10, C3D6 and their variants), triangles, quadrangles and lines of shells, membranes, beams and trusses,
-// surfaces of element sides. Tags come from element sets and surfaces: from our own names, or else from their
-// order in the file.
+// and surfaces of element sides. Element sets and surfaces become tags, by name if the name is ours, or else
+// by their order in the file.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -497,7 +497,7 @@ class AbaqusReader {
     return tag;
   }
 
-  /// Reads our own sets by region.
+  /// Reads the sets of elements by region (VOLUME_1) of our own files.
   void read_volumes() {
     PerKind<std::vector<Index>> regions;
     for (const CellKind kind : all_cell_kinds)

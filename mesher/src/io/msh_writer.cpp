@@ -183,7 +183,7 @@ void write_cells(FileWriter& out, const TetMesh& mesh, CellKind kind, const std:
   }
 }
 
-/// The kinds of cells by entity, and the number of the first cell of each kind.
+/// The cells of each kind by entity, and the number of the first cell of each kind.
 struct CellGroups {
   std::vector<EntityMembers> of_kind;
   std::array<std::size_t, cell_kinds> first;

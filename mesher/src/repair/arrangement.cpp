@@ -423,7 +423,7 @@ void note_places(const ComplexDraft& draft, std::span<const Simplex> simplices,
   }
 }
 
-// The simplices of earlier rounds, found by their corners. Points never move, so simplices with the same
+// The simplices of an earlier round, found by their corners. Points never move, so simplices with the same
 // corners are at the same place.
 class KnownSimplices {
  public:
@@ -464,8 +464,8 @@ class Settled {
   KnownSimplices known_;
 };
 
-// A tool that merges corners that come near other corners or edges. Simplices of the last round need not be
-// compared with each other.
+// A tool that merges corners that come near other corners or edges. Does not compare triangles with each
+// other that remain from its last run.
 class GrainSnapper {
  public:
   GrainSnapper(ComplexDraft& draft, double reach, Work* work, bool cancel, KeptMerges kept)

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double spacing_by_diagonal = 0.02;
 
-// Rotates and sorts corners into an order that is the same for two copies of a triangle.
+// Sorts the corners, so that copies of a triangle have them in the same order.
 CornerPoints canonical(CornerPoints t) {
   const auto key = [](const Point& p) { return std::array{p.x, p.y, p.z}; };
   std::sort(t.begin(), t.end(), [&](const Point& a, const Point& b) { return key(a) < key(b); });

@@ -233,7 +233,7 @@ class BoundaryKeeper {
   // Returns the patches whose removal reduces the length of the soup's open edges, small ones first.
   std::vector<Index> open_patches(const std::vector<int>& weights) const {
     std::map<Index, double> gain;
-    std::vector<std::pair<Index, int>> own;  // the soup's patches at the edge
+    std::vector<std::pair<Index, int>> own;  // the soup's patches at the edge, and their weights
     for (Index e = 0; e < edges_.size(); ++e) {
       int sum = 0;
       own.clear();
@@ -387,7 +387,7 @@ class BoundaryKeeper {
     draft_.origins = std::move(origins);
   }
 
-  // Returns the origin of the soup's own copy of the sheet, if there is one.
+  // Returns the origin of the soup's own copy of the sheet or, if there is none, of the first copy.
   Origin origin_for(Index sheet, Index soup) const {
     for (const Sheets::Copy& copy : sheets_.of(sheet))
       if (origin(copy).soup == soup) return origin(copy);

@@ -492,7 +492,8 @@ std::vector<Plc::Warning> lost_lines(std::span<const PolygonSoup> soups, const P
   return warnings;
 }
 
-// Throws LostVolume if most of the volume would be lost; otherwise adds a warning of the lost volume.
+// Throws LostVolume if most of the volume would be lost. Adds a warning if the lost share is smaller but not
+// negligible.
 void judge_volume(const KeptVolume& kept, Plc& plc) {
   constexpr double most = 0.5, told = 0.05;
   if (kept.lost > most * kept.input)

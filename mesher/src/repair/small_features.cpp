@@ -98,7 +98,8 @@ class SmallOnes {
     return border > 0 ? 2 * area / border : INFINITY;
   }
 
-  // Keeps features with a name or a target edge length, and those that bound a region thinner than the size.
+  // Keeps features with a target edge length, curves with a name, and patches around regions thinner than the
+  // size.
   void find_kept(const RepairOptions& options) {
     const std::vector<bool> thin = thin_regions();
     for (Index p = 0; p < kept_.size(); ++p)

@@ -16,10 +16,10 @@ struct CollapsedFeature {
 };
 
 /// Collapses the features of a complex that are smaller than `size` (absolute) in the draft that it was built
-/// from: curves to points, narrow patches and sharp tips of patches to curves. Keeps features with names or
-/// kept tags, the last patch of a group, and patches around regions thinner than the size. Returns the
-/// features. Corners move by less than the size; surfaces stay closed, but facets may intersect. Cost:
-/// O(n log n).
+/// from: curves to points, narrow patches and sharp tips of patches to curves. Keeps features with kept tags,
+/// curves with names, the patches of a group if all are small, and patches around regions thinner than the
+/// size. Returns the features. Corners move by less than the size; surfaces stay closed, but facets may
+/// intersect. Cost: O(n log n).
 std::vector<CollapsedFeature> collapse_in_draft(facets::ComplexDraft& draft, const Plc& plc, double size,
                                                 const RepairOptions& options, Work& work);
 
