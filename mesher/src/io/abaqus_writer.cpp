@@ -63,7 +63,7 @@ bool is_volume(std::string_view name) {
   return name.starts_with(prefix) && parse(name.substr(prefix.size()), region);
 }
 
-/// Returns names of regions that also differ from those of our own element sets.
+/// Returns names of regions that differ from each other and from the names of our own element sets.
 NamesByTag names_of_regions(const TetMesh& mesh) {
   DistinctNames known(std::string::npos);
   known.add(capital_word(abaqus_everything));

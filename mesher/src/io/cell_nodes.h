@@ -130,7 +130,7 @@ auto& tags_of(Mesh& mesh, CellKind kind) {
     default: return mesh.edge_tag;
   }
 }
-/// Returns the regions of the cells of volumes, the patches of triangles and quadrangles, the curves of
+/// Returns the regions of the cells of volumes, the patches of triangles or quadrangles, or the curves of
 /// edges.
 template <class Mesh>
 auto& features_of(Mesh& mesh, CellKind kind) {

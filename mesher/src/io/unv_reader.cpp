@@ -114,7 +114,7 @@ class UnvReader {
   }
 
   /// Returns the number of words on the next line. SALOME and FreeCAD write the beams' record of three
-  /// numbers for rods, too; rods have two nodes.
+  /// numbers for rods, too, before the line with a rod's two nodes.
   std::size_t words_on_next_line() const {
     TextScanner ahead = scan_;
     ahead.skip_line();

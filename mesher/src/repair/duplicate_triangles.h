@@ -23,8 +23,8 @@ struct DuplicateTriangle {
 /// Returns whether the corners are an odd permutation of the sorted ones.
 bool is_odd(const facets::Corners& corners);
 
-/// Returns which triangles cancel, given all triangles of one soup with the same corners: pairs of opposite
-/// orientation; in a complex, where orientation has no meaning, all but one.
+/// Returns which triangles cancel, given all triangles of one soup with the same corners. Pairs of opposite
+/// orientation cancel; in a complex, where orientation has no meaning, all but one do.
 std::vector<Index> cancelled_among(std::vector<DuplicateTriangle> duplicates, bool in_complex);
 
 /// Drops cancelled triangles and returns their number. Cost: O(n log n).

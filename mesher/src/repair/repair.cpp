@@ -371,8 +371,8 @@ class Repairer {
     }
   }
 
-  // Cuts facets that nearly coincide. Rounding their cuts would make ever more intersections, so they are
-  // first snapped together, within the smallest distance that helps.
+  // Cuts facets, some of which may nearly coincide. If rounding their cuts makes ever more intersections,
+  // first snaps the facets together, within the smallest distance that helps.
   bool cut_what_nearly_coincides() {
     const ComplexDraft before = draft_;
     const RepairReport report_before = report_;

@@ -27,8 +27,8 @@ std::vector<CollapsedFeature> collapse_in_draft(facets::ComplexDraft& draft, con
 std::vector<SmallFeature> gone_from(const facets::ComplexDraft& draft,
                                     const std::vector<CollapsedFeature>& features);
 
-/// Gives the patches and curves of a changed complex the numbers that they had before, if both were numbered
-/// by `number_untagged`; new ones get numbers after these.
+/// Gives the patches and curves of a changed complex the numbers that they had before, if both complexes were
+/// numbered by `number_untagged`; new ones get numbers after these.
 void keep_numbers(const Plc& before, Plc& after);
 
 }  // namespace collarmesh::repairing

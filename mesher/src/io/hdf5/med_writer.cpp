@@ -1,6 +1,6 @@
 // SALOME's format MED (.med), written with its library: one unstructured mesh, named like the file, of
-// volumes, faces and segments. Each tag has a family, in a group named as in label_names.h. Partitions
-// are the whole numbers of a field on the tetrahedra.
+// volumes, faces and segments. Each tag has a family, in a group named as in label_names.h. Partitions are
+// the whole numbers of a field on the cells.
 #include <fmt/format.h>
 #include <med.h>
 
