@@ -1,7 +1,7 @@
 // Gmsh's format 4.1 as text (Gmsh's reference manual, "MSH file format"). Entities are the features: a volume
 // per region, a surface per patch, a curve per curve, a point per vertex. All entities with one tag form a
-// physical group. Cells are numbered in the order of their kinds, tets first; $ElementData "collar" and
-// "crease" covers all of them in the order of the file, as meshio needs it. In a partitioned mesh the cells
+// physical group. Cells are numbered in the order of their kinds, tets first; each $ElementData, such as
+// "collar", covers all of them in the order of the file, as meshio needs it. In a partitioned mesh the cells
 // and nodes of an entity are divided among its parts, one entity for each partition: otherwise Gmsh would
 // lose data when it writes such a mesh again. $Periodic has a link for each point, curve and surface on the
 // second sides of periodic faces.
