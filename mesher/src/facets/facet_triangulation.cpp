@@ -260,7 +260,7 @@ class FacetHoles {
   explicit FacetHoles(const PolygonSoup& soup) : holes_(soup.facet_holes) {
     std::ranges::stable_sort(holes_, [](const auto& a, const auto& b) { return a.facet < b.facet; });
   }
-  /// Returns the hole points of a facet. Call it with increasing facets.
+  /// Returns the hole points of a facet. Call it for facets in ascending order.
   std::vector<Point> take(Index facet) {
     std::vector<Point> points;
     for (; next_ < holes_.size() && holes_[next_].facet <= facet; ++next_)

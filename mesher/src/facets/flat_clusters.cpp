@@ -13,8 +13,8 @@ namespace {
 constexpr double needle_height = 10;
 // A triangle lower than this many tolerances may belong to a plane that does not match its own normal.
 constexpr double foldable_height = 2;
-// Tolerance of a triangle's plane, relative to its height, if that is less than the planar tolerance. So the
-// faces of a body smaller than the tolerance stay distinct.
+// The tolerance of a triangle's plane is at most this share of its height, so that the faces of a body
+// smaller than the planar tolerance stay distinct.
 constexpr double share_of_height = 0.1;
 
 double longest_side(const ComplexDraft& draft, Index t) {
@@ -89,8 +89,8 @@ class ClusterFinder {
     }
   }
 
-  // Returns whether the triangle of this side, a neighbour of t in the seed's cluster, belongs to the
-  // cluster, too.
+  // Returns whether the triangle of this side belongs to the seed's cluster. Precondition: its neighbour t
+  // does.
   bool joins(Index side, Index t, Index seed) const {
     return same_facet(t, side / 3) || (!divided(t, side / 3) && in_plane(side, seed));
   }

@@ -15,7 +15,7 @@ struct FlatClusters {
   std::vector<Vector> normal;  ///< by triangle: its unit normal; for needles, that of the seed
 };
 
-/// Edges where clusters end although their neighbours lie in the same plane.
+/// Edges at which clusters end even if the triangles on both sides lie in one plane.
 enum class ClusterBorder {
   none,           ///< no such edges
   given_features  ///< between facets of different tags in soups that give their features

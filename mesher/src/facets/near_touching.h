@@ -5,9 +5,10 @@
 
 namespace collarmesh::facets {
 
-/// Adds a fault for each pair of features without a common feature that come closer to each other than the
-/// limit (absolute). Closer points would have been welded, so it is unclear whether the features touch.
-/// Precondition: no two features cross. Cost: as that of finding intersections.
+/// Adds a fault for each pair of features that come closer to each other than the limit (absolute) but share
+/// no feature. Points as close would have been welded, so it is unclear whether the features touch. Curves
+/// with the same ends are faults if they are that close along their whole length. Precondition: no two
+/// features cross. Cost: as that of finding intersections.
 void find_near_touching(const Plc& plc, double limit, Faults& faults);
 
 }  // namespace collarmesh::facets

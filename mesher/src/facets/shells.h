@@ -19,7 +19,7 @@ DisjointSets find_shells(const ComplexDraft& draft, const EdgeTable& edges);
 /// A search for the places where straight lines meet the triangles.
 class LineCaster {
  public:
-  /// Keeps references to both. The triangles are the first items of the tree, in their order.
+  /// Keeps references to both arguments. The triangles are the first items of the tree, in their order.
   LineCaster(const ComplexDraft& draft, const BoxTree& boxes) : draft_(draft), boxes_(boxes) {}
 
   struct Crossing {

@@ -24,10 +24,10 @@ class Simplices {
   Simplices(const ComplexDraft& draft, const EdgeTable& edges);
 
   std::span<const Simplex> list() const { return list_; }
-  /// Returns the tree of their boxes. The triangles of one facet form a group, because they come from one
-  /// triangulation and need no test against each other; every other simplex is a group of its own.
+  /// Returns the tree of the simplices' boxes. The triangles of one facet form a group, because they come
+  /// from one triangulation and need no test against each other; every other simplex is a group of its own.
   const BoxTree& boxes() const { return boxes_; }
-  /// Returns a tree to find pairs with: the same items, possibly along other axes.
+  /// Returns a tree of the same items for finding pairs. Its boxes may lie along other axes.
   const BoxTree& boxes_for_pairs() const { return turned_ ? *turned_ : boxes_; }
 
  private:

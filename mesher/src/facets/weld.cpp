@@ -69,9 +69,10 @@ UsedPoints collect(std::span<const PolygonSoup> soups, PointMap& map, Faults& fa
   return all;
 }
 
-// Least number of places that coordinates must resolve across the input.
+// Coordinates must resolve at least this many steps across the input.
 constexpr double fewest_steps = 4096;
-// Extents between these limits keep the products of lengths in all decisions within a double's range.
+// If the extent and the coordinates keep these limits, the products of lengths in all decisions are within a
+// double's range.
 constexpr double smallest_extent = 1e-30, largest_coordinate = 1e30;
 
 void require_range(const Box& box, Faults& faults) {

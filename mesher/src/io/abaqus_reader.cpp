@@ -1,7 +1,7 @@
 // Reads the input format of Abaqus and CalculiX (.inp): tetrahedra, prisms and pyramids of solids (C3D4,
 // C3D10, C3D6 and their variants), triangles, quadrangles and lines of shells, membranes, beams and trusses,
-// surfaces of element sides. Tags come from element sets and surfaces: from our own names, or else from their
-// order in the file.
+// and surfaces of element sides. Element sets and surfaces become tags, by name if the name is ours, or else
+// by their order in the file.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -349,7 +349,8 @@ class AbaqusReader {
     return found->second;
   }
 
-  /// Reads a set. Members are numbers or the names of earlier sets; with GENERATE first, last and step.
+  /// Reads a set. Members are numbers or the names of earlier sets; with GENERATE, a line has the first and
+  /// the last member and the step.
   void read_set(const Keyword& keyword) {
     const std::size_t set = index_of_set(keyword.set);
     sets_[set].named_apart = true;
@@ -496,7 +497,7 @@ class AbaqusReader {
     return tag;
   }
 
-  /// Reads our own sets by region.
+  /// Reads the sets of elements by region (VOLUME_1) of our own files.
   void read_volumes() {
     PerKind<std::vector<Index>> regions;
     for (const CellKind kind : all_cell_kinds)
@@ -559,7 +560,7 @@ class AbaqusReader {
   std::vector<CellPlace> places_;  ///< by element
   std::map<std::string, std::size_t, std::less<>> set_index_;
   std::vector<Set> sets_;
-  std::size_t repeated_members_ = 0;  ///< ranges and names of sets in all sets and surfaces
+  std::size_t repeated_members_ = 0;  ///< members that ranges and names of sets stand for
   std::vector<std::pair<std::string, std::vector<Side>>> surfaces_;
   GroupTags groups_;
 };

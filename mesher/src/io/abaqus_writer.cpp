@@ -35,7 +35,8 @@ namespace {
 
 constexpr std::size_t numbers_a_line = 16, number_width = 20;
 
-/// Returns the shortest text that reads back as the same double, or the most digits that fit.
+/// Returns the shortest text that reads back as the same double, or, if that is too long, as many digits as
+/// fit.
 std::string fitted(double value) {
   std::string text = fmt::format("{}", value);
   for (int digits = 16; text.size() > number_width; --digits) text = fmt::format("{:.{}g}", value, digits);
@@ -62,7 +63,7 @@ bool is_volume(std::string_view name) {
   return name.starts_with(prefix) && parse(name.substr(prefix.size()), region);
 }
 
-/// Returns names of regions that also differ from those of our own element sets.
+/// Returns names of regions that differ from each other and from the names of our own element sets.
 NamesByTag names_of_regions(const TetMesh& mesh) {
   DistinctNames known(std::string::npos);
   known.add(capital_word(abaqus_everything));

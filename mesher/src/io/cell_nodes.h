@@ -61,7 +61,7 @@ class CellNodes {
     return result;
   }
   /// Returns the cell whose node order[k] is listed[k]. The order may name a node several times, as for a
-  /// pyramid that a format has as a hexahedron; returns nothing if these entries of `listed` differ.
+  /// pyramid that a format stores as a hexahedron; returns nothing if these entries of `listed` differ.
   static std::optional<CellNodes> gathered(std::span<const Index> listed,
                                            std::span<const std::uint8_t> order) {
     CellNodes result;
@@ -130,7 +130,7 @@ auto& tags_of(Mesh& mesh, CellKind kind) {
     default: return mesh.edge_tag;
   }
 }
-/// Returns the regions of the cells of volumes, the patches of triangles and quadrangles, the curves of
+/// Returns the regions of the cells of volumes, the patches of triangles or quadrangles, or the curves of
 /// edges.
 template <class Mesh>
 auto& features_of(Mesh& mesh, CellKind kind) {

@@ -162,7 +162,7 @@ void complete_mesh(const std::string& path, TetMesh& mesh) {
   complete_layers(mesh);
   if (!has_region_numbers(mesh)) number_regions(mesh);
   for (const CellKind kind : surface_kinds)
-    if (mesh.tets.empty())  // the mesh of a surface stays as it is
+    if (mesh.tets.empty())  // then no face is reversed or has regions
       regions_beside(mesh, kind).assign(count_of(mesh, kind), {0, 0});
     else if (regions_beside(mesh, kind).empty())
       find_face_regions(mesh, kind);

@@ -1,7 +1,6 @@
 // Exodus II (Sandia, "EXODUS II: A Finite Element Data Model", SAND92-2137, and the names of seacas'
-// exodusII_int.h) in NetCDF's classic format: a block of elements for each region and kind of cells, a
-// side set for each tag of
-// patches and a node set for each tag of curves, with their names.
+// exodusII_int.h) in NetCDF's classic format: a block of elements for each region and kind of cells, a side
+// set for each tag of patches and a node set for each tag of curves, with their names.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,7 +23,7 @@ namespace {
 
 constexpr std::size_t longest_name = 255, usual_name = 32;
 
-/// Exodus' names of a kind of cells, and numbers of the sides, by our side.
+/// Exodus' names for a kind of cells, and its number for each of our sides.
 struct ExodusType {
   CellKind kind;
   std::array<const char*, 2> names;  ///< by order

@@ -50,7 +50,7 @@ bool is_given_name(std::size_t dimension, std::string_view name) {
 
 namespace {
 
-/// Cuts a text, without half a UTF-8 character at the end.
+/// Cuts a text to at most `longest` bytes, but not within a UTF-8 character.
 std::string cut(const std::string& text, std::size_t longest) {
   if (text.size() <= longest) return text;
   std::size_t end = longest;

@@ -1,6 +1,6 @@
 // Medit's text format (.mesh; P. Frey, "MEDIT: an interactive mesh visualization software", 2001). The
-// reference of a vertex is the dimension of its feature (0 if unknown), of a volume the region, of
-// faces and edges the tag. Corners are the vertices that are features, for remeshers to keep.
+// reference of a vertex is the dimension of its feature (0 if unknown), that of a volume its region, that of
+// a face or edge its tag. The section Corners lists the vertices that are features, for remeshers to keep.
 #include <algorithm>
 #include <string_view>
 #include <vector>

@@ -26,7 +26,7 @@ struct MeshFormat {
 constexpr std::array mesh_formats{MeshFormat{".msh", read_msh_cells}, MeshFormat{".mesh", read_medit_cells},
                                   MeshFormat{".vtu", read_vtu_cells}, MeshFormat{".vtp", read_vtp_cells}};
 
-/// Returns a point in each body of tets with one tag that are connected by faces.
+/// Returns a point in each body. A body consists of tets with one tag that are connected by faces.
 std::vector<PolygonSoup::RegionPoint> points_in_regions(const TetMesh& mesh) {
   if (mesh.tet_tag.size() != mesh.tets.size()) return {};
   std::vector<std::pair<std::array<Index, 3>, Index>> sides;  // corners in order, and the tet
@@ -43,7 +43,7 @@ std::vector<PolygonSoup::RegionPoint> points_in_regions(const TetMesh& mesh) {
     const Index s = sides[i - 1].second, t = sides[i].second;
     if (sides[i - 1].first == sides[i].first && mesh.tet_tag[s] == mesh.tet_tag[t]) bodies.unite(s, t);
   }
-  std::map<Index, std::pair<double, Index>> largest;  // by body: six volumes, and the tet
+  std::map<Index, std::pair<double, Index>> largest;  // by body: six times the volume, and the tet
   for (Index t = 0; t < mesh.tets.size(); ++t) {
     const auto& [a, b, c, d] = mesh.tets[t];
     const double volume =

@@ -1,7 +1,8 @@
 // Gmsh's format 2.2 as text, which OpenFOAM's gmshToFoam, SU2's and other converters read. Physical groups
-// are numbered across all dimensions, because gmshToFoam has one list of names: faces keep tags that Gmsh
-// accepts, then regions and curves get free numbers. Partitions, from 1, are further tags of elements, after
-// the physical group and the entity.
+// are numbered across all dimensions, because gmshToFoam has one list of names: a tag is its own number if
+// Gmsh accepts it and it is free, tags of faces first, then those of regions, then those of curves. Other
+// tags get free numbers. Partitions, from 1, are further tags of elements, after the physical group and the
+// entity.
 #include <array>
 #include <limits>
 #include <map>

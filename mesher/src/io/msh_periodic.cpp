@@ -105,8 +105,8 @@ class PairLinks {
 /// The masters of entities so far.
 class Masters {
  public:
-  /// Adds a link, unless the entity has a master already, or is itself a master of its new one. Returns
-  /// whether it was added.
+  /// Adds a link, unless its entity has a master already or the masters would form a cycle. Returns whether
+  /// it was added.
   bool add(const MshLink& link) {
     std::map<int, int>& masters = of_[link.dimension];
     for (int at = link.master;;) {

@@ -288,7 +288,7 @@ void read_cells_of_block(Values& values, const GmshType* type, int entity, Tag t
   cell.kind = type->kind;
   cell.entity = entity;
   cell.tag = tag;
-  bool between_partitions = false;  // elements that Gmsh made between partitions; they are not part of the
+  bool between_partitions = false;  // Gmsh made the elements between partitions; they are not part of the
                                     // mesh
   const auto& parts = contents.partition_entities[type->dimension()];
   if (const auto part = parts.find(entity); part != parts.end()) {
@@ -325,7 +325,7 @@ void read_elements(Values values, bool is_version_40, Contents& contents) {
     values.fail(fmt::format("expected {} elements, found {}", total, found));
 }
 
-/// Reads links of surfaces that have a matrix.
+/// Reads links. Keeps those of surfaces that have a matrix.
 template <class Values>
 void read_periodic(Values values, Contents& contents) {
   constexpr Index matrix = 16;
@@ -367,7 +367,7 @@ void read_nodes_2(Values values, Contents& contents) {
   sort_nodes(values, contents);
 }
 
-/// Reads the tags of an element: its physical group, its entity and partitions.
+/// Reads the rest of an element: its tags (physical group, entity, partitions), then its nodes.
 template <class Values>
 void read_element_2(Values& values, const GmshType* type, std::uint64_t number, int tags,
                     Contents& contents) {

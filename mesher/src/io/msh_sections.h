@@ -50,7 +50,7 @@ class MshText {
   TextScanner scan_;
 };
 
-/// The values that the sections of all binary files have.
+/// The values that sections of binary files have in all versions.
 class MshBytes {
  public:
   int integer(std::string_view what) { return bytes_.get<std::int32_t>(what); }

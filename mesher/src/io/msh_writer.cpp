@@ -1,7 +1,7 @@
 // Gmsh's format 4.1 as text (Gmsh's reference manual, "MSH file format"). Entities are the features: a volume
 // per region, a surface per patch, a curve per curve, a point per vertex. All entities with one tag form a
-// physical group. Cells are numbered in the order of their kinds, tets first; $ElementData "collar" and
-// "crease" covers all of them in the order of the file, as meshio needs it. In a partitioned mesh the cells
+// physical group. Cells are numbered in the order of their kinds, tets first; each $ElementData, such as
+// "collar", covers all of them in the order of the file, as meshio needs it. In a partitioned mesh the cells
 // and nodes of an entity are divided among its parts, one entity for each partition: otherwise Gmsh would
 // lose data when it writes such a mesh again. $Periodic has a link for each point, curve and surface on the
 // second sides of periodic faces.
@@ -183,7 +183,7 @@ void write_cells(FileWriter& out, const TetMesh& mesh, CellKind kind, const std:
   }
 }
 
-/// The kinds of cells by entity, and the number of the first cell of each kind.
+/// The cells of each kind by entity, and the number of the first cell of each kind.
 struct CellGroups {
   std::vector<EntityMembers> of_kind;
   std::array<std::size_t, cell_kinds> first;

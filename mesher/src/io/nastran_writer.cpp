@@ -51,7 +51,7 @@ constexpr std::array<const char*, 2> nastran_names_of(CellKind kind) {
   }
 }
 
-/// Writes fields of eight characters, on continuation lines if there are more than eight.
+/// Writes elements in fields of eight characters. Continuation lines take the fields after the eighth.
 void write_elements(FileWriter& out, const TetMesh& mesh, CellKind kind, const auto& property_of) {
   const char* const name = nastran_names_of(kind)[mesh.order() == 2 ? 1 : 0];
   const std::size_t first = count_before(mesh, kind) + 1;

@@ -16,7 +16,7 @@ namespace collarmesh::io {
 /// Members of each group, by the group's tag.
 using Groups = std::map<Tag, std::vector<Index>>;
 
-/// Returns the nodes of the cells of a dimension with each tag, numbered from 1, ascending.
+/// Returns by tag the nodes of the cells of a dimension, numbered from 1, ascending.
 inline Groups nodes_by_tag(const TetMesh& mesh, std::size_t dimension) {
   Groups groups;
   for_each_kind(mesh, dimension, [&](CellKind kind) {
@@ -28,7 +28,7 @@ inline Groups nodes_by_tag(const TetMesh& mesh, std::size_t dimension) {
   return groups;
 }
 
-/// Returns the cells of volumes with each tag, numbered from `first` in the order of their kinds.
+/// Returns by tag the cells of volumes, numbered from `first` in the order of their kinds.
 inline Groups volumes_by_tag(const TetMesh& mesh, std::size_t first) {
   Groups groups;
   for_each_kind(mesh, 3, [&](CellKind kind) {

@@ -1,5 +1,5 @@
-// Our own reader, because CGAL 5.5.1's read_OBJ drops corners that are no number, takes a face line cut off
-// after two corners and the index 0, and rejects lines continued with a backslash.
+// Our own reader, because CGAL 5.5.1's read_OBJ drops corners that are no number, accepts the index 0 and
+// face lines cut off after two corners, and rejects lines continued with a backslash.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ struct ObjElement {
   std::size_t group, material;  ///< indices of their names
 };
 
-/// Names in the order of their first use; "" is none.
+/// Names in the order of their first use; "" stands for no name.
 class Names {
  public:
   std::size_t position(std::string_view name) {
@@ -91,7 +91,7 @@ void require_in_range(const std::string& path, const ObjElement& element, std::i
       .fail(fmt::format("a corner is vertex {}, but the file has {} vertices", corner + 1, size));
 }
 
-/// Returns the tags of the faces: by groups, if there are several or they are our own, otherwise by
+/// Returns the tags of the faces: by groups, if there are several or one has a name of ours, otherwise by
 /// materials.
 std::vector<Tag> tags_of_faces(const Elements& elements, PolygonSoup& soup) {
   std::set<std::size_t> groups, materials;

@@ -30,7 +30,7 @@ using Corners = std::array<Index, 4>;
 
 std::size_t count_corners(const Corners& corners) { return corners[3] == none ? 3 : 4; }
 
-/// A side of a cell, with its corners as seen from outside, and the cell in front of it, or none.
+/// A side of a cell, with its corners counterclockwise from outside, and the cell in front of it, or none.
 struct Side {
   Corners corners;
   Index owner = none, neighbour = none;

@@ -105,7 +105,7 @@ Header read_header(TextScanner& scan) {
   return header;
 }
 
-/// The source of values: text or bytes.
+/// The values of a text file; `BinaryValues` has the same functions for a binary one.
 struct TextValues {
   TextScanner& scan;
   double number(Type, std::string_view what) { return scan.number(what); }

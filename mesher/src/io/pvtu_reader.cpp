@@ -54,7 +54,7 @@ void sort_by_number(std::vector<PieceMember>& members) {
   });
 }
 
-/// Joins the arrays of these names that all pieces have.
+/// Joins the arrays that have one of these names and exist in all pieces.
 template <std::size_t count>
 void join_arrays(const std::vector<NamedPiece>& pieces, const std::vector<PieceMember>& members,
                  const std::array<std::string_view, count>& names, VtkPiece::Arrays VtkPiece::*arrays,

@@ -30,7 +30,7 @@ namespace fs = std::filesystem;
 
 constexpr std::uint8_t duplicate = 1;
 
-/// The members of one piece; ghost tets follow its own.
+/// The cells and points of one piece. Its ghost tets follow its other tets.
 struct Members {
   PerKind<std::vector<Index>> cells;
   std::vector<Index> points;

@@ -22,7 +22,7 @@ namespace {
 /// - a line in `tet_mesh_formats`;
 /// - a line in `meshes` in report/conversion_report.cpp, or `convert` reports no losses;
 /// - if it writes or reads side files, a line each in `files_written`, `is_of_several_files` and `files_read`
-///   in files/file_groups.cpp, so that none takes the place of an input;
+///   in files/file_groups.cpp, so that no side file overwrites an input;
 /// - a line in tests/fast/io_round_trip_test.cpp if it is read, else a case of
 ///   tests/io/solver_formats_test.py and its name in the list in tests/CMakeLists.txt;
 /// - if it is read, its name in `formats` in tests/fuzz/CMakeLists.txt (write_seeds.cpp compares this list

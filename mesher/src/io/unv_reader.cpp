@@ -1,7 +1,6 @@
 // Reads the universal file format of I-DEAS (.unv): nodes (2411, 781), elements (2412, 780) and groups (2467
 // and its forerunners). Groups become tags: a group with a name of ours becomes the tag that the name stands
-// for, others are numbered in their order. Without groups the materials become tags. Names other than patch_7
-// are kept.
+// for, others are numbered in their order and keep their names. Without groups the materials become tags.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -98,7 +97,8 @@ class UnvReader {
     while (!at_mark()) {
       const std::int64_t number = scan_.integer("the number of an element"),
                          type = scan_.integer("the type of an element");
-      // Skips the property table (780: two numbers), material, colour, and the number of nodes.
+      // The element's property and material follow (two numbers each in dataset 780), then colour and number
+      // of nodes.
       scan_.integer("a property");
       if (old) scan_.integer("a property");
       const std::int64_t material = scan_.integer("a material");
@@ -114,7 +114,7 @@ class UnvReader {
   }
 
   /// Returns the number of words on the next line. SALOME and FreeCAD write the beams' record of three
-  /// numbers for rods, too; rods have two nodes.
+  /// numbers for rods, too, before the line with a rod's two nodes.
   std::size_t words_on_next_line() const {
     TextScanner ahead = scan_;
     ahead.skip_line();

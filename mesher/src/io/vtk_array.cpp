@@ -45,7 +45,7 @@ class Stored {
     return bytes;
   }
 
-  /// Returns bytes without taking them; fewer if padding ends the run before.
+  /// Returns bytes without taking them; fewer if padding ends the run earlier.
   std::string peek(std::uint64_t count) const {
     if (count > left()) fail(count, left());
     if (!base64_) return std::string(text_.substr(0, count));

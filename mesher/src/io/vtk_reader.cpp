@@ -26,8 +26,8 @@ struct LegacyType {
   std::string_view name;
   NumberType type;
 };
-/// VTK writes vtkIdType with 32 bits here. "long" has 64 bits, as on the systems where most VTK files come
-/// from.
+/// VTK writes vtkIdType with 32 bits in this format. "long" has 64 bits, as on the systems where most VTK
+/// files come from.
 constexpr LegacyType legacy_types[] = {{"char", NumberType::i8},
                                        {"signed_char", NumberType::i8},
                                        {"unsigned_char", NumberType::u8},
@@ -103,7 +103,7 @@ class LegacyReader {
       fail(fmt::format("the dataset is {}, but has to be UNSTRUCTURED_GRID", in_quotes(kind)));
   }
 
-  /// Rejects data that belong to an earlier item.
+  /// Rejects a section of points or cells that comes after their data.
   void require_no_data(const VtkPiece::Arrays& arrays, std::string_view section) const {
     if (!arrays.empty()) fail(fmt::format("{} come after their data, but must come before", section));
   }

@@ -143,8 +143,8 @@ class CurveFinder {
     chains_.push_back(std::move(chain));
   }
 
-  // Cuts a chain at its farthest point if merging neighbour by neighbour made it deviate from a straight
-  // line.
+  // Cuts chains at their farthest points until none deviates from a straight line: `passes` compares a point
+  // only with its two neighbours.
   void cut_bent_chains() {
     std::vector<Chain> pieces;
     for (const Chain& chain : chains_) {

@@ -18,8 +18,8 @@ struct FeatureSegment {
 };
 
 /// Finds the segments: edges that the input gives as segments; edges that are not shared by exactly two
-/// triangles; edges between different tags or soups; and edges where a surface without given features turns
-/// by more than the feature angle (degrees).
+/// triangles; edges between different tags or soups; and edges where a surface turns by more than the feature
+/// angle (degrees) or, if its features are given, by more than 90 degrees.
 std::vector<FeatureSegment> find_segments(const facets::ComplexDraft& draft, const facets::EdgeTable& edges,
                                           const facets::FlatClusters& clusters, double feature_angle);
 

@@ -4,9 +4,10 @@
 
 namespace collarmesh::plc {
 
-/// Where separately triangulated solids touch, gives flat pieces of two soups with the same border the same
-/// triangles. The later piece gets the triangles of the first; its interior points that the first does not
-/// have are dropped. Precondition: the triangles of each soup are oriented.
+/// Gives flat pieces of two soups the same triangles if they have the same border, as pieces have where
+/// separately triangulated solids touch. The later piece gets the triangles of the earlier one; its inner
+/// points are dropped unless the earlier piece has them. Precondition: the triangles of each soup are
+/// oriented.
 void unify_interfaces(facets::ComplexDraft& draft);
 
 }  // namespace collarmesh::plc

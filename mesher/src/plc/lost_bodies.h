@@ -9,11 +9,12 @@
 namespace collarmesh::plc {
 
 /// Returns warnings of lost bodies: sets of connected facets in the soups that welding within `distance`
-/// (absolute) or repair removed completely from the complex. Bodies without an extent do not count. Cost:
-/// that of sorting the points.
+/// (absolute) or repair removed completely from the complex. Only bodies of at least four facets with an
+/// extent of at most 100 `distance` count. Cost: that of sorting the points.
 std::vector<Plc::Warning> lost_bodies(std::span<const PolygonSoup> soups, const Plc& plc, double distance);
 
-/// Regions without a region of equal volume (within 2%) in a repaired complex, with a point of each.
+/// The regions whose volume (within 2%) no region of the repaired complex has, each given by one of its
+/// points.
 struct LostRegions {
   std::vector<Point> thin;    ///< regions no thicker than the tolerance allows
   double thin_volume = 0;     ///< volume of all thin regions

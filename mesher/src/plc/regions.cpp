@@ -168,7 +168,7 @@ class RegionFinder {
   Index chamber_at(Index side) { return chamber_of_shell_[shells_.find(side)]; }
 
   // Claims a side for a soup: a complex claims both sides of its facets; a surface claims the sides behind
-  // them as solid.
+  // its facets as solid.
   void claim(Index side, Index soup) {
     const Index at = chamber_at(side);
     if (at == none) return;

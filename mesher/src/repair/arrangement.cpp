@@ -104,8 +104,8 @@ class Cutter {
     }
   }
 
-  // Finds where the sides of s pierce t. Returns false if a corner of one lies in the plane of the other or a
-  // side meets an edge: other functions construct those points.
+  // Finds where the sides of s pierce t. Returns false if a corner of s lies in the plane of t or a side
+  // meets an edge of t, because other functions construct such points.
   bool find_piercings(const facets::Corners& s, const facets::Corners& t, Index number,
                       std::vector<ExactPoint>& found) {
     const auto at = [&](Index p) -> const Point& { return draft_.points[p]; };
@@ -185,7 +185,7 @@ class Cutter {
       return planar_orientation(axis, draft_.points[p], draft_.points[q], draft_.points[r]);
     };
     const int inwards = turn(t[0], t[1], t[2]);
-    std::array<std::array<int, 3>, 2> within{};  // by end and side of the triangle; > 0: on the inner side
+    std::array<std::array<int, 3>, 2> within{};  // by end of e, and side of t; > 0: on the inner side
     for (unsigned end = 0; end < 2; ++end)
       for (unsigned k = 0; k < 3; ++k) within[end][k] = inwards * turn(t[k], t[(k + 1) % 3], e[end]);
     bool along = false;
@@ -210,7 +210,7 @@ class Cutter {
     if (common.size() == 2 && !along) cuts_[number].segments.push_back({common[0], common[1]});
   }
 
-  // Adds the end of an edge, if it is in the triangle.
+  // Adds p, an end of an edge, if it lies in t.
   void add_end(Index p, const facets::Corners& t, const std::array<int, 3>& within,
                std::vector<ExactPoint>& common) {
     if (*std::min_element(within.begin(), within.end()) < 0) return;
@@ -256,7 +256,7 @@ class Cutter {
     std::vector<ExactPoint> operator()(const std::vector<ExactPoint>& polygon) const { return polygon; }
   };
 
-  // Adds a point. All triangles at an edge share its points.
+  // Adds a point at which a simplex is cut. If it lies on an edge, all triangles at the edge get it.
   void add_point(const Simplex& s, Index number, const ExactPoint& p) {
     std::array<ExactPoint, 3> corners;
     for (unsigned i = 0; i < s.size; ++i) {
@@ -423,7 +423,7 @@ void note_places(const ComplexDraft& draft, std::span<const Simplex> simplices,
   }
 }
 
-// The simplices of earlier rounds, found by their corners. Points never move, so simplices with the same
+// The simplices of an earlier round, found by their corners. Points never move, so simplices with the same
 // corners are at the same place.
 class KnownSimplices {
  public:
@@ -464,8 +464,8 @@ class Settled {
   KnownSimplices known_;
 };
 
-// A tool that merges corners that come near other corners or edges. Simplices of the last round need not be
-// compared with each other.
+// A tool that merges corners that come near other corners or edges. Does not compare triangles with each
+// other that remain from its last run.
 class GrainSnapper {
  public:
   GrainSnapper(ComplexDraft& draft, double reach, Work* work, bool cancel, KeptMerges kept)

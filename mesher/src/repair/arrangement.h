@@ -21,7 +21,7 @@ struct ArrangementReport {
 /// The merges of near corners that are kept.
 enum class KeptMerges {
   all,  ///< all; merging pauses or resumes after each round of cutting that leaves no fewer intersections
-  where_nothing_meets  ///< only merges after which no facets intersect at their place
+  where_nothing_meets  ///< only merges at whose place no facets intersect afterwards
 };
 
 /// Cuts the triangles and segments of a draft along their intersections until they only meet in common

@@ -6,8 +6,9 @@
 
 namespace collarmesh::repairing {
 
-/// The difference between two states of a draft, divided into places: removed or added triangles that are
-/// connected by edges. If the changes at a place are undone, surfaces stay closed, but facets may intersect.
+/// The difference between two states of a draft, divided into places. A place is a set of removed or added
+/// triangles that are connected by edges. If the changes at a place are undone, surfaces stay closed, but
+/// facets may intersect.
 class Changes {
  public:
   /// Keeps references to both arguments. Precondition: the later state has the points of the earlier one,

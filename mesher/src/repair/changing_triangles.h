@@ -155,9 +155,9 @@ class ChangingTriangles {
   facets::ComplexDraft& draft_;
   double reach_;
   Work& work_;
-  const BoxFrame frame_;                                        // axes of the boxes
-  bool searched_triangles_ = false, searched_corners_ = false;  // whether the first search for few changed
-                                                                // triangles is over; it keeps no trees
+  const BoxFrame frame_;  // axes of the boxes
+  // Whether the first search near few changed triangles is over; only later searches keep trees.
+  bool searched_triangles_ = false, searched_corners_ = false;
   std::size_t count_ = 0;
   std::vector<bool> alive_;
   std::vector<Vector> normals_;

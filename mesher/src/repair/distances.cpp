@@ -14,7 +14,7 @@ namespace {
 
 constexpr double spacing_by_diagonal = 0.02;
 
-// Rotates and sorts corners into an order that is the same for two copies of a triangle.
+// Sorts the corners, so that copies of a triangle have them in the same order.
 CornerPoints canonical(CornerPoints t) {
   const auto key = [](const Point& p) { return std::array{p.x, p.y, p.z}; };
   std::sort(t.begin(), t.end(), [&](const Point& a, const Point& b) { return key(a) < key(b); });
@@ -73,7 +73,7 @@ double diagonal_of(std::span<const CornerPoints> triangles) {
   return box.diagonal();
 }
 
-/// The search for the sample outside of a surface that is farthest from it. Winding numbers cost far more
+/// A search for the sample that is farthest from a surface among those outside. Winding numbers cost far more
 /// than distances, so they are only computed for the farthest of many samples. A sample inside has a ball
 /// around it, up to the surface, in which all other samples are inside, too.
 class FarthestOutside {

@@ -100,7 +100,7 @@ std::size_t cancel_duplicates(ComplexDraft& draft) {
 }
 
 bool is_two_sided(const ComplexDraft& draft) {
-  constexpr double least = 1e-6;  // volume relative to that of a box with the surface's area
+  constexpr double least = 1e-6;  // six volumes, relative to area^(3/2)
   const Point centre = draft.bounds.centre();
   double six = 0, area = 0;
   for (Index t = 0; t < draft.triangles.size(); ++t) {

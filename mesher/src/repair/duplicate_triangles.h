@@ -23,8 +23,8 @@ struct DuplicateTriangle {
 /// Returns whether the corners are an odd permutation of the sorted ones.
 bool is_odd(const facets::Corners& corners);
 
-/// Returns which triangles cancel, given all triangles of one soup with the same corners: pairs of opposite
-/// orientation; in a complex, where orientation has no meaning, all but one.
+/// Returns which triangles cancel, given all triangles of one soup with the same corners. Pairs of opposite
+/// orientation cancel; in a complex, where orientation has no meaning, all but one do.
 std::vector<Index> cancelled_among(std::vector<DuplicateTriangle> duplicates, bool in_complex);
 
 /// Drops cancelled triangles and returns their number. Cost: O(n log n).
@@ -33,8 +33,9 @@ std::size_t cancel_duplicates(facets::ComplexDraft& draft);
 /// Returns whether the oriented surface encloses no volume, like a surface that is double everywhere.
 bool is_two_sided(const facets::ComplexDraft& draft);
 
-/// In closed, consistently oriented surfaces that consist of pairs of opposite copies, keeps one copy of each
-/// pair. Returns the number of dropped triangles. Cost: O(n log n).
+/// Keeps one copy of each triangle in components that are closed without the other copies, and orients the
+/// result consistently. A component is connected by corners. Returns the number of dropped triangles. Cost:
+/// O(n log n).
 std::size_t keep_one_side(facets::ComplexDraft& draft);
 
 }  // namespace collarmesh::repairing

@@ -147,8 +147,8 @@ std::vector<Corners> triangulate(const ComplexDraft& draft, const Loop& loop) {
     Face(int i, int j, int k) : a(i), b(j), c(k) {}
   };
   std::vector<Face> faces;
-  // Tries the edges of the Delaunay triangulation of the points first; if these contain no triangulation of
-  // the curve, tries all edges, which takes cubic time.
+  // Tries the edges of the Delaunay triangulation of the points first; if these contain no triangulation of a
+  // short curve, tries all edges, which takes cubic time.
   CGAL::Polygon_mesh_processing::triangulate_hole_polyline(
       polyline, std::back_inserter(faces),
       CGAL::parameters::do_not_use_cubic_algorithm(corners.size() > most_edges_for_cubic_time));

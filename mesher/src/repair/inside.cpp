@@ -37,7 +37,7 @@ bool turned_against(const Corners& a, const Corners& b) {
   return b[(at + 1) % 3] != a[1];
 }
 
-// The largest few of some triangles.
+// The `count` largest triangles of a set.
 class Largest {
  public:
   static constexpr std::size_t count = 24;
@@ -139,7 +139,8 @@ class BoundaryKeeper {
            ascending(sheets_.unique.triangles, sides[0]) != ascending(sheets_.unique.triangles, sides[1]);
   }
 
-  // Finds clusters of sheets connected by edges. A cluster is tangled if any of its edges is not plain.
+  // Finds clusters of sheets connected by edges. A cluster is tangled unless at each of its edges two
+  // triangles of one soup meet, without copies and with consistent orientation.
   void find_clusters() {
     DisjointSets sets(sheets_.size());
     std::vector<bool> tangled(sheets_.size(), false);
@@ -232,7 +233,7 @@ class BoundaryKeeper {
   // Returns the patches whose removal reduces the length of the soup's open edges, small ones first.
   std::vector<Index> open_patches(const std::vector<int>& weights) const {
     std::map<Index, double> gain;
-    std::vector<std::pair<Index, int>> own;  // the soup's patches at the edge
+    std::vector<std::pair<Index, int>> own;  // the soup's patches at the edge, and their weights
     for (Index e = 0; e < edges_.size(); ++e) {
       int sum = 0;
       own.clear();
@@ -292,7 +293,7 @@ class BoundaryKeeper {
     });
   }
 
-  // A component of space without the triangles that is thinner than `thickness`.
+  // A chamber (a component of space without the triangles) thinner than `thickness`.
   struct ThinChamber {
     Point origin;
     double volume = 0, area = 0;
@@ -320,8 +321,8 @@ class BoundaryKeeper {
     return chambers;
   }
 
-  // Gives each thin chamber the label with which it has the largest common area, beginning beside thick
-  // chambers.
+  // Gives each thin chamber the label of the neighbours with which it has the largest common area. Begins
+  // with thin chambers beside thick ones.
   void give_away_thin_chambers() {
     std::map<Index, ThinChamber> left = thin_chambers();
     while (!left.empty()) {
@@ -386,7 +387,7 @@ class BoundaryKeeper {
     draft_.origins = std::move(origins);
   }
 
-  // Returns the origin of the soup's own copy of the sheet, if there is one.
+  // Returns the origin of the soup's own copy of the sheet or, if there is none, of the first copy.
   Origin origin_for(Index sheet, Index soup) const {
     for (const Sheets::Copy& copy : sheets_.of(sheet))
       if (origin(copy).soup == soup) return origin(copy);

@@ -19,8 +19,8 @@ struct Trouble {
 };
 
 /// Returns features below a tolerance (absolute) and creases of less than a degree, which cost more the
-/// sharper they are. Returns only the first of several troubles near each other. Cost: O(n log n + k) for k
-/// pairs of near neighbours.
+/// sharper they are. Includes only as many pairs of near features as `Faults` keeps. Cost: O(n log n + k) for
+/// k pairs of near neighbours.
 std::vector<Trouble> find_troubles(const Plc& plc, double tolerance);
 
 }  // namespace collarmesh::repairing

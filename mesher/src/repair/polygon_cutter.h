@@ -22,7 +22,7 @@ struct PolygonCuts {
 
 /// Returns the constrained Delaunay triangulation of a nearly planar polygon, in the projection along
 /// `normal`, with the points and edges inside it. The triangles are oriented like the polygon. Returns
-/// nothing if points coincide or edges cross there.
+/// nothing if points coincide or edges cross in the projection.
 std::optional<std::vector<facets::Corners>> cut_polygon(const std::vector<Point>& points,
                                                         const Vector& normal, const PolygonCuts& cuts);
 

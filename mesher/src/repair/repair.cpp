@@ -46,7 +46,8 @@ using namespace plc;
 using namespace repairing;
 
 constexpr std::size_t most_rounds = 6;
-// Borders are stitched over at most this share of the diagonal: wider gaps are intended.
+// Gaps between borders that are wider than the tolerance are stitched up to this share of the diagonal. Wider
+// ones are taken as intended.
 constexpr double widest_stitch = 1e-3;
 // If more than this share of the area is in open sheets, which are dropped, soups count as enclosing nothing.
 constexpr double most_in_open_sheets = 0.5;
@@ -98,8 +99,8 @@ class Repairer {
     }
   }
 
-  /// Collapses the features of the complex of these soups that are smaller than a size (absolute).
-  /// Precondition: the soups are valid. The distances are measured to `input`.
+  /// Collapses features smaller than `size` (absolute) in the soups. Precondition: `complex` was built from
+  /// these soups without faults. Distances are measured to `input`.
   RepairResult collapse_features(const RepairedPlc& complex, double size,
                                  std::span<const PolygonSoup> input) {
     try {
@@ -252,7 +253,7 @@ class Repairer {
     add_places(report_.turned, turned.turned_components, 0, turned.places);
   }
 
-  // Returns a tag above all tags of the input. (The tag of a CAD face is its number.)
+  // Returns a tag above all tags of the input, including the numbers of CAD faces, which are their tags.
   Tag next_tag() const {
     Tag tag = 0;
     for (const PolygonSoup& soup : soups_)
@@ -370,8 +371,8 @@ class Repairer {
     }
   }
 
-  // Cuts facets that nearly coincide. Rounding their cuts would make ever more intersections, so they are
-  // first snapped together, within the smallest distance that helps.
+  // Cuts facets, some of which may nearly coincide. If rounding their cuts makes ever more intersections,
+  // first snaps the facets together, within the smallest distance that helps.
   bool cut_what_nearly_coincides() {
     const ComplexDraft before = draft_;
     const RepairReport report_before = report_;
@@ -423,7 +424,8 @@ class Repairer {
     return true;
   }
 
-  // Returns the lost tags of facets. Tags of CAD faces are their numbers, not groups.
+  // Returns the lost tags of facets. With `only_groups`, leaves out tags of CAD faces, which are numbers and
+  // not groups.
   std::vector<Tag> lost_tags(const std::vector<PolygonSoup>& repaired, bool only_groups) const {
     std::set<Tag> before, after;
     for (const PolygonSoup& soup : soups_)
@@ -490,7 +492,8 @@ std::vector<Plc::Warning> lost_lines(std::span<const PolygonSoup> soups, const P
   return warnings;
 }
 
-// Throws LostVolume if most of the volume would be lost; otherwise adds a warning of the lost volume.
+// Throws LostVolume if most of the volume would be lost. Adds a warning if the lost share is smaller but not
+// negligible.
 void judge_volume(const KeptVolume& kept, Plc& plc) {
   constexpr double most = 0.5, told = 0.05;
   if (kept.lost > most * kept.input)

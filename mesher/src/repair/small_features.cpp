@@ -98,7 +98,8 @@ class SmallOnes {
     return border > 0 ? 2 * area / border : INFINITY;
   }
 
-  // Keeps features with a name or a target edge length, and those that bound a region thinner than the size.
+  // Keeps features with a target edge length, curves with a name, and patches around regions thinner than the
+  // size.
   void find_kept(const RepairOptions& options) {
     const std::vector<bool> thin = thin_regions();
     for (Index p = 0; p < kept_.size(); ++p)
@@ -259,8 +260,8 @@ class FeatureCollapser {
     return apply();
   }
 
-  // Adds the new triangles that are narrow or have a sharp corner to the list, and removes those that are
-  // gone.
+  // Adds to the list the new triangles that are narrow or have a sharp corner. Removes triangles that no
+  // longer exist.
   void find_narrow() {
     std::erase_if(narrow_, [&](Index t) { return !state_.triangles().alive(t); });
     for (; looked_at_ < state_.triangles().end(); ++looked_at_) {
@@ -289,8 +290,8 @@ class FeatureCollapser {
     });
   }
 
-  // Adds the normals of the triangles across the long sides that are pieces of curves, and, if `further`, of
-  // those beside the other half of a narrow quadrangle.
+  // Adds the normals of the triangles across the long sides that are pieces of curves. If `further`, does the
+  // same from a neighbour in a narrow patch, such as the other half of a quadrangle.
   void add_normals_beside(Index t, bool further, std::vector<Vector>& normals) const {
     const Corners& corners = draft_.triangles[t];
     const Needle needle = needle_of(draft_, corners);
@@ -470,9 +471,9 @@ std::vector<Shape> shapes_of_curves(const Plc& plc) {
   return shapes;
 }
 
-/// Returns a tag for each new feature: that of the old feature with which it has the most points in common;
-/// of several such features, the most parallel one. Each old tag is given once; other new features get
-/// numbers after these.
+/// Returns a tag for each new feature: the tag of the old feature with which it has the most points in common
+/// (of several, the most parallel one). Gives each old tag at most once. Other new features get numbers above
+/// all old tags.
 std::vector<Tag> numbers_from(const std::vector<Shape>& before, const std::vector<Tag>& tags,
                               const std::vector<Shape>& after) {
   std::map<std::array<double, 3>, std::vector<Index>> at;

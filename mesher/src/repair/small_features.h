@@ -16,10 +16,10 @@ struct CollapsedFeature {
 };
 
 /// Collapses the features of a complex that are smaller than `size` (absolute) in the draft that it was built
-/// from: curves to points, narrow patches and sharp tips of patches to curves. Keeps features with names or
-/// kept tags, the last patch of a group, and patches around regions thinner than the size. Returns the
-/// features. Corners move by less than the size; surfaces stay closed, but facets may intersect. Cost:
-/// O(n log n).
+/// from: curves to points, narrow patches and sharp tips of patches to curves. Keeps features with kept tags,
+/// curves with names, the patches of a group if all are small, and patches around regions thinner than the
+/// size. Returns the features. Corners move by less than the size; surfaces stay closed, but facets may
+/// intersect. Cost: O(n log n).
 std::vector<CollapsedFeature> collapse_in_draft(facets::ComplexDraft& draft, const Plc& plc, double size,
                                                 const RepairOptions& options, Work& work);
 
@@ -27,8 +27,8 @@ std::vector<CollapsedFeature> collapse_in_draft(facets::ComplexDraft& draft, con
 std::vector<SmallFeature> gone_from(const facets::ComplexDraft& draft,
                                     const std::vector<CollapsedFeature>& features);
 
-/// Gives the patches and curves of a changed complex the numbers that they had before, if both were numbered
-/// by `number_untagged`; new ones get numbers after these.
+/// Gives the patches and curves of a changed complex the numbers that they had before, if both complexes were
+/// numbered by `number_untagged`; new ones get numbers after these.
 void keep_numbers(const Plc& before, Plc& after);
 
 }  // namespace collarmesh::repairing

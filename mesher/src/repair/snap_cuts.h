@@ -10,7 +10,7 @@
 
 namespace collarmesh::repairing {
 
-/// The edges and triangles that get points in one round. Cuts them there.
+/// The points that edges and triangles get in one round. Cuts the edges and triangles at these points.
 class SnapCuts {
  public:
   struct OnEdge {

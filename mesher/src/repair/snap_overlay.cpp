@@ -52,7 +52,7 @@ void Overlay::find_crossings_inside() {
   });
 }
 
-// Adds the corners of s that t does not have and that are near to t.
+// Adds to t the corners of s that are near t, except common ones, and records the edges at them.
 void Overlay::find_near_corners(Index s, Index t) {
   const Corners& corners = state_.draft().triangles[t];
   for (unsigned k = 0; k < 3; ++k) {

@@ -21,7 +21,7 @@ class Overlay {
   /// Overlays the triangles not examined yet. Returns whether any were cut.
   bool run();
 
-  /// Returns how many crossings of edges and triangles got new points in the last run.
+  /// Returns how many crossings of edges the last run found, plus how many triangles got points inside.
   std::size_t count() const { return count_; }
 
  private:

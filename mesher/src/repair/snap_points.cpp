@@ -48,7 +48,7 @@ bool PointMerger::merge() {
   return true;
 }
 
-// Returns new points and the old ones near them, sorted; removes the old ones from the grid.
+// Returns the new points and the points of the grid near them, sorted. Removes the latter from the grid.
 std::vector<Index> PointMerger::points_to_compare() {
   in_grid_.resize(state_.draft().points.size(), false);
   std::vector<Index> order, touched = state_.take_touched();

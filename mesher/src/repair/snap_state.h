@@ -76,7 +76,8 @@ class SnapState {
   Work& work_;
   ChangingTriangles triangles_;
   std::vector<std::uint8_t> flags_;  // by triangle: bits of the parts that have not examined it yet
-  /// Triangles not examined by corners, and by overlay; some no longer exist.
+  /// The triangles that the corner snapper has not examined, and those that the overlay has not. Some no
+  /// longer exist.
   std::array<std::vector<Index>, 2> unseen_;
   std::vector<Index> added_, touched_;
   std::vector<Done> done_;

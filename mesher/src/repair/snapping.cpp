@@ -39,8 +39,8 @@ class Snapper {
 
   SnapReport run() {
     if (knows_some_) cancel_new_duplicates();
-    // Snapping corners makes few triangles. If this multiplies them, triangles run along each other, and the
-    // limit stops the snapping.
+    // Snapping corners makes few triangles, except where triangles run along each other. The limit stops the
+    // snapping then.
     const std::size_t count = state_.triangles().count();
     most_triangles_ = count / (what_ == SnapWhat::corners ? 4 : 1) + count + 1000;
     if (ComplexDraft before = draft_; !snap_all_corners())
@@ -49,9 +49,9 @@ class Snapper {
   }
 
  private:
-  // Overlays triangles until nothing changes. Overlays make new corners. Stops if an overlay makes many
-  // crossings and more than half the number of the one before, if corners never settle, or after too many
-  // overlays. Then undoes the changes at places that still change.
+  // Overlays triangles until nothing changes. Snaps the new corners after each overlay. Stops if an overlay
+  // makes many crossings, more than half as many as the one before, if corners do not settle, or after too
+  // many overlays. Then undoes the changes at places that still change.
   SnapReport overlay_until_settled() {
     const ComplexDraft before = state_.triangles().compacted();
     const std::size_t done_before = state_.done().size();

@@ -73,8 +73,8 @@ class SoupMaker {
     add_new_edges(known);
   }
 
-  // Adds the new edges at which facets of a soup that names its features end or meet sharply. They have the
-  // tag 0, because any other tag may be that of an edge of the CAD shape.
+  // Adds the new edges at which facets of a soup with given features end or meet sharply. They have the tag
+  // 0, because any other tag may be that of an edge of the CAD shape.
   void add_new_edges(const std::set<std::array<Index, 3>>& known) {
     if (std::none_of(soups_.begin(), soups_.end(), [](const PolygonSoup& s) { return s.given_features; }))
       return;

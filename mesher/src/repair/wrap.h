@@ -10,12 +10,11 @@ namespace collarmesh::repairing {
 
 /// Returns a closed surface around all facets of the soups, made of triangles with tag 1: orientable, without
 /// intersections. It lies outside of the facets at a distance of at least `offset`, mostly less than three
-/// times that, and more where it spans a gap or a hole. It enters gaps and holes wider than about 2 `alpha`.
-/// `alpha` and `offset` are absolute, input units; `alpha` should be 2 to 4 times `offset`.
-/// Without triangles to wrap the result has no facets.
-/// Throws PlcError for points that are not finite and indices out of range.
-/// Cost: O(n log n) for n triangles, and O(k log k) for a result of area k alpha^2. Portaneri, Rouxel-Labbe,
-/// Hemmer, Cohen-Steiner, Alliez 2022, by CGAL's Alpha_wrap_3.
+/// times `offset`, and more where it spans a gap or a hole. It enters gaps and holes wider than about 2
+/// `alpha`. `alpha` and `offset` are absolute, input units; `alpha` should be 2 to 4 times `offset`. Without
+/// triangles to wrap the result has no facets. Throws PlcError for points that are not finite and indices out
+/// of range. Cost: O(n log n) for n triangles, and O(k log k) for a result of area k alpha^2. Portaneri,
+/// Rouxel-Labbe, Hemmer, Cohen-Steiner, Alliez 2022, by CGAL's Alpha_wrap_3.
 PolygonSoup wrap(std::span<const PolygonSoup> soups, double alpha, double offset);
 
 /// Returns the largest distance of a surface of triangles from the facets of the soups, absolute, measured at

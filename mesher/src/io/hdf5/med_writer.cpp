@@ -1,6 +1,6 @@
 // SALOME's format MED (.med), written with its library: one unstructured mesh, named like the file, of
-// volumes, faces and segments. Each tag has a family, in a group named as in label_names.h. Partitions
-// are the whole numbers of a field on the tetrahedra.
+// volumes, faces and segments. Each tag has a family, in a group named as in label_names.h. Partitions are
+// the whole numbers of a field on the cells.
 #include <fmt/format.h>
 #include <med.h>
 
@@ -130,7 +130,7 @@ void write_med(const std::string& path, const TetMesh& mesh) {
   file.create_mesh();
   file.write_points(mesh.points);
   for (const MedType& type : med_types) file.write_cells(type);
-  if (!mesh.tet_partition.empty()) {  // for all cells: meshio reads no field that some cells lack
+  if (!mesh.tet_partition.empty()) {  // on all cells, because meshio reads no field that some lack
     const bool second = mesh.order() == 2;
     file.create_partitions();
     file.write_partitions(mesh.tet_partition, second ? MED_TETRA10 : MED_TETRA4);
