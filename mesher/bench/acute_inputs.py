@@ -22,15 +22,15 @@ class Part:
 
 @dataclass
 class AcuteInput:
-    """An input of the program acute_shape. `family` and `parameters` are its arguments; `copies`: number of
-    copies in a grid, 0: the shape itself."""
+    """An input that the program acute_shape writes. `family` and `parameters` are its arguments; `copies`:
+    number of copies in a grid, 0: the shape itself."""
     program: Path
     family: str
     parameters: tuple[float, ...]
     copies: int = 0
     feature_angle: float = 0
     suffix = ".poly"
-    volume = diagonal = 1.0   # approximate, for a first guess of the size for a number of tets
+    volume = diagonal = 1.0   # approximate; gives a first guess of the size for a wanted number of tets
     parts: list[Part] = field(default_factory=list)
     small_copy: float = 0   # factor of a smaller copy beside the shape; for polylines
 

@@ -3,11 +3,11 @@
 with `estimated_errors` and `sizes_from_errors`), beside meshes of equal sizes: the edge of an L-shaped
 domain, Fichera's corner, and wires in a block with dolfinx; a plate with a hole and a notched bar with
 CalculiX. Then meshes that are adapted up and down many times: how much volumes, curves and names change, and
-how well lengths fit.
+how well edge lengths fit the sizes.
 
-Errors are those of the energy: the root of the energy of the difference from the solution. With linear elements the
-best rate is the third root of the number of unknowns. Energies of the solutions come from elements of second order on
-the last mesh. Prints Markdown tables."""
+Errors are those of the energy: the root of the energy of the difference from the solution. With linear
+elements errors fall at best with the third root of the number of unknowns. Energies of the solutions come
+from elements of second order on the last mesh. Prints Markdown tables."""
 
 from __future__ import annotations
 
@@ -75,15 +75,15 @@ def wires_in_block(collarmesh):
 
 
 def quarter_plate(collarmesh):
-    """Returns a quarter of a plate, 4 by 4 by 0.4, with a hole of 12 sides, whose corners are edges of the
-    shape: with a round hole, coarse and fine meshes would have different domains."""
+    """Returns a quarter of a plate, 4 by 4 by 0.4, with a hole of 12 sides. The hole is not round, because
+    coarse and fine meshes would then have different domains."""
     arc = [(math.cos(a), math.sin(a)) for a in np.linspace(math.pi / 2, 0, 4)]
     arc[0], arc[-1] = (0, 1), (1, 0)
     return collarmesh.Complex(*extruded([(4, 0), (4, 4), (0, 4), *arc], 0, 0.4))
 
 
 def notched_bar(collarmesh):
-    """Returns a bar, 4 by 2 by 0.5, with a notch of 60 degrees and depth 0.8 amid a side."""
+    """Returns a bar, 4 by 2 by 0.5, with a notch of 60 degrees and depth 0.8 in the middle of a side."""
     half = 0.8 * math.tan(math.radians(30))
     return collarmesh.Complex(*extruded([(-2, 0), (-half, 0), (0, 0.8), (half, 0), (2, 0), (2, 2), (-2, 2)], 0, 0.5))
 
@@ -134,13 +134,13 @@ class Poisson:
         squared = None
         if self.gradient:
             off = ufl.grad(found) - self.gradient(ufl, ufl.SpatialCoordinate(domain))
-            measure = ufl.dx(metadata={"quadrature_degree": 5})   # a rule without points on edges of tets
+            measure = ufl.dx(metadata={"quadrature_degree": 5})   # a quadrature rule without points on edges of tets
             squared = dolfinx.fem.assemble_scalar(dolfinx.fem.form(ufl.dot(off, off) * measure))
         return Solution(values, space.dofmap.index_map.size_global, energy, squared)
 
 
 class Elasticity:
-    """A body under traction along x at two ends, or at one and symmetric at planes, in CalculiX."""
+    """A body in CalculiX, under traction along x at both ends, or at one end if it has planes of symmetry."""
 
     young, poisson = 1.0, 0.3
 
@@ -249,7 +249,7 @@ def problems(folder: Path, limit: float) -> list[Problem]:
 # Loops
 
 def rate(unknowns: list[float], errors: list[float]) -> float:
-    """Returns the exponent of the fall of errors, by least squares."""
+    """Returns the exponent with which errors fall, by least squares."""
     return -float(np.polyfit(np.log(unknowns), np.log(errors), 1)[0])
 
 
@@ -342,8 +342,8 @@ def change(now: dict, before: dict) -> float:
 
 
 def up_and_down(collarmesh, path: Path, loops: int, log) -> list[str]:
-    """Adapts a mesh to fine sizes at a place that goes around, again and again, and in the end to those of the first
-    mesh."""
+    """Adapts a mesh again and again to sizes that are fine at a moving place, and in the end to the sizes of
+    the first mesh."""
     first = mesh = collarmesh.mesh(str(path))
     low, high = first.points.min(0), first.points.max(0)
     size = np.linalg.norm(high - low) / 20
@@ -381,10 +381,11 @@ def main() -> None:
     parser.add_argument(
         "--module", default=str(Path(__file__).parents[2] / "build/release/python"),
         help="folder of the Python package")
-    parser.add_argument("--problems", nargs="*", help="names, else all")
+    parser.add_argument("--problems", nargs="*", help="names of problems (default: all)")
     parser.add_argument("--loops", type=int, default=6)
     parser.add_argument("--first", type=int, default=3000, help="tets that the first loop asks for")
-    parser.add_argument("--growth", type=float, default=1.8, help="factor of their number in each loop")
+    parser.add_argument("--growth", type=float, default=1.8,
+                        help="factor from the tets of one loop to those of the next")
     parser.add_argument("--up-and-down", type=int, default=12, help="loops of the second table")
     parser.add_argument("--models", nargs="*", type=Path, help="inputs of the second table")
     parser.add_argument("--limit", type=float, default=600, help="seconds for a computation by CalculiX")

@@ -51,7 +51,7 @@ class Outcome:
     tets: int = 0
     warned: bool = False
     missed: list[str] = field(default_factory=list)     # guarantees, by the certificate
-    differs: list[str] = field(default_factory=list)    # statements of the judge or the report that disagree
+    differs: list[str] = field(default_factory=list)    # statements in which judge and report disagree
     # whether no tet is thin, so that the ratio holds everywhere outside collars, by the judge
     within: bool = False
     largest: float = 0         # largest dihedral angle in collars, by the judge
@@ -175,15 +175,16 @@ def main() -> int:
     parser.add_argument("--build", type=Path, default=root / "build" / "bench")
     parser.add_argument("--corpus", type=Path, default=os.environ.get("COLLARMESH_CORPUS"))
     parser.add_argument("--only", nargs="*", default=[], help="names of inputs")
-    parser.add_argument("--share", type=float, default=12, help="size of the corpus: the diagonal over this")
+    parser.add_argument("--share", type=float, default=12,
+                        help="size for files of the corpus: the diagonal divided by this")
     parser.add_argument("--time-limit", type=float, default=120)
     parser.add_argument("--groups", nargs="*", default=["acute families", "corpus"])
     parser.add_argument("--without", nargs="*", default=[], help="names of inputs that are left out")
     parser.add_argument("--angles", type=float, nargs="*", default=[100, 110, 120, 130])
     parser.add_argument("--slow", action="store_true", help="slow acute families, too")
     parser.add_argument("--most", type=float, default=math.inf,
-                        help="inputs that take longer without an option, CPU seconds, are left out")
-    parser.add_argument("--stop-after", type=float, default=math.inf, help="seconds; no input begins later")
+                        help="leave out inputs that take more CPU seconds without an option")
+    parser.add_argument("--stop-after", type=float, default=math.inf, help="start no input after these seconds")
     parser.add_argument("--core", type=int)
     options = parser.parse_args()
     about = machine(options.build)

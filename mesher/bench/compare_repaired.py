@@ -12,9 +12,9 @@ inside the result (winding number above 3/4) are left out, because repair is mea
 Volumes: the result's is that of its triangles (with several regions, the reported one); the input's is that
 of the places where the winding number is above 1/2 or below -1/2 (surfaces: random points of the box; CAD
 files: OpenCASCADE's volume of the solids). "differs" is the share of the input's volume in which the two
-disagree, at the same points. Bodies are the input's connected parts that are closed; for each a point
-half-way between two opposite sides says whether it (or, of a cavity, its void) is still there. Rows come with
-the largest distance first."""
+disagree, at the same points. Bodies are the input's connected parts that are closed; a body has changed if a
+point half-way between two of its opposite sides is inside before the repair and outside after it, or the
+reverse. Rows come with the largest distance first."""
 
 from __future__ import annotations
 
@@ -111,7 +111,7 @@ def read_off(path: Path) -> np.ndarray:
 
 
 def read_ply(path: Path) -> np.ndarray:
-    import meshio   # reads binary and text with many kinds of numbers
+    import meshio   # reads binary and textual files, and many types of numbers
     mesh = meshio.read(path)
     polygons = [list(row) for block in mesh.cells if block.type in ("triangle", "quad", "polygon")
                 for row in block.data]
@@ -133,7 +133,7 @@ def volume(triangles: np.ndarray) -> float:
 
 
 def samples_of(triangles: np.ndarray, count: int, random: np.random.Generator) -> np.ndarray:
-    """Returns the corners' mean and random points, by area."""
+    """Returns random points, distributed by area, and the centres of triangles."""
     share = areas(triangles)
     chosen = triangles[random.choice(len(triangles), count, p=share / share.sum())]
     weights = random.dirichlet((1, 1, 1), count)
@@ -277,7 +277,7 @@ def place_inside(part: np.ndarray) -> np.ndarray | None:
 
 
 def changed_bodies(given: np.ndarray, repaired: np.ndarray, diagonal: float) -> tuple[int, list[np.ndarray]]:
-    """Returns the number of closed parts, and places in those whose inside has changed."""
+    """Returns the number of closed parts, and a place in each part whose inside has changed."""
     parts = closed_parts(given, diagonal)
     places = [p for p in (place_inside(part) for part in parts[:500]) if p is not None]
     if not places:

@@ -139,7 +139,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program", type=Path)
     parser.add_argument("inputs", nargs="+", type=Path, help="files and folders")
-    parser.add_argument("--every", type=int, default=1, help="take every so many of them")
+    parser.add_argument("--every", type=int, default=1, help="take only every N-th of them")
     parser.add_argument("--log", type=Path, required=True,
                         help="one JSON line for each input; inputs in it are not run again")
     parser.add_argument("--cpu", type=int, default=60, help="limit in seconds")

@@ -31,7 +31,7 @@ header = ["input", "triangles or facets", "tets", "CPU s", "refinement s", "TetG
 class CorpusFile:
     """A file of the corpus that both programs read unchanged."""
     path: Path
-    polygons: range           # range of the number of polygons by the manifest
+    polygons: range           # range of the number of polygons, from the manifest
     volume: float = 1
     diagonal: float = math.inf
     suffix: str = field(init=False)

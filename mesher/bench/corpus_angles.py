@@ -33,8 +33,8 @@ def on_boundary(tets: np.ndarray, points: int) -> np.ndarray:
 
 def angles(mesh_file: Path) -> list[str]:
     """Returns columns: the numbers of tets and of thin tets; the smallest and largest angle of all; then the
-    number and these angles for tets away from thin tets and collars, and for those of these with a corner
-    inside."""
+    number and these angles for tets away from thin tets and collars, and for those of the latter that have a
+    corner inside."""
     mesh = meshio.read(mesh_file)
     blocks = [i for i, cells in enumerate(mesh.cells) if cells.type == "tetra"]
     tets = np.concatenate([mesh.cells[i].data for i in blocks])

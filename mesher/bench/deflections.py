@@ -51,7 +51,7 @@ class Part:
     young: float            # nu is 0 everywhere, so that a clamped end causes no disturbance
     weight: float           # weight per unit of volume, along -z
     expected: float         # expected deflection, by theory
-    held: Callable[[Nodes], list[tuple[np.ndarray, int, int]]]   # nodes, first and last direction
+    held: Callable[[Nodes], list[tuple[np.ndarray, int, int]]]   # held nodes, first and last held direction
     looked_at: Callable[[Nodes], np.ndarray]                     # returns the nodes whose mean deflection is measured
 
 

@@ -249,7 +249,8 @@ def main() -> int:
     parser.add_argument("--limit", type=int, default=60, help="CPU seconds for one run of one program")
     parser.add_argument("--out", type=Path, default=Path("few_elements.tsv"))
     parser.add_argument("--references", type=Path, default=Path("references"), help="keeps the dense tessellations")
-    parser.add_argument("--sound", type=float, default=1, help="degrees, for the second row of each order")
+    parser.add_argument("--sound", type=float, default=1,
+                        help="second row: files where Gmsh's smallest angle is at least this, in degrees")
     parser.add_argument("--core", type=int, help="the core to run on (default: the last one)")
     options = parser.parse_args()
     about = machine(options.build)

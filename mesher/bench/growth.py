@@ -40,9 +40,9 @@ class Series:
 
 
 def crease_series(program: Path, largest: int) -> list[Series]:
-    """Measures by the number of crease segments: one in a wedge of 40 degrees, one in a fan of 4 sheets (the
-    sides of two such wedges, 40 degrees between them), one in a fan of 8 sheets (all in grids of turned
-    copies), one at the tip of each tooth of a comb. All teeth of a comb are on two facets."""
+    """Measures against the number of crease segments. There is one in a wedge of 40 degrees, one in a fan of
+    4 sheets (the sides of two such wedges, 40 degrees between them), one in a fan of 8 sheets (all in grids
+    of turned copies), and one at the tip of each tooth of a comb. All teeth of a comb are on two facets."""
     counts = [n for k in range(1, 6) for n in (10 ** k, 3 * 10 ** k) if n <= min(largest, 100000)]
     copies = [Series(title, {n: AcuteInput(program, family, parameters, n) for n in counts if n <= most}, {})
               for title, family, parameters, most in (("wedges of 40 degrees", "wedge", (40, 1), 100000),
@@ -86,7 +86,7 @@ class Cube:
 
 def curve_table(program: Path, time_limit: float, folder: Path) -> str:
     """Measures the memory for a tet and for a cell of the triangulation (of which some are outside the
-    regions), beside a cube whose edges are as long as all others."""
+    regions), with fine curves, and for a cube meshed with one size everywhere."""
     rows = []
     folder.mkdir(parents=True, exist_ok=True)
     fine = [2.0 ** -k for k in range(6, 13)]

@@ -120,11 +120,12 @@ def main() -> int:
     parser.add_argument("--build", type=Path, default=here.parents[1] / "build" / "bench")
     parser.add_argument("--file", type=Path, default=here / "history.tsv")
     parser.add_argument("--chart", type=Path, default=here / "images" / "history.svg")
-    parser.add_argument("--commit", help="that was built (default: that of this checkout, + where files differ)")
+    parser.add_argument("--commit",
+                        help="commit that was built (default: that of this checkout, with + if files differ)")
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--size", nargs="*", type=float, default=[0.0417, 0.01935],
-                        help="of the unit box's tets (default: 100k and 1M of them)")
-    parser.add_argument("--only-draw", action="store_true", help="the lines that are there")
+                        help="target edge lengths in the unit box (default: those for 100k and 1M tets)")
+    parser.add_argument("--only-draw", action="store_true", help="draw the existing lines; measure nothing")
     parser.add_argument("--time-limit", type=float, default=600)
     options = parser.parse_args()
     options.build = options.build.resolve()

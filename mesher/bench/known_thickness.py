@@ -21,7 +21,7 @@ from known_volumes import diagonal, side
 from processes import ProgramFailed, run
 from tables import table
 
-Rays = tuple[np.ndarray, np.ndarray]   # starts outside the body, and unit vectors inwards
+Rays = tuple[np.ndarray, np.ndarray]   # starting points outside the body, and unit vectors that point inwards
 
 
 def around_axis(radius: float, low: float, high: float, length: float, rng: np.random.Generator, count: int) -> Rays:

@@ -6,9 +6,9 @@
 Each mesher gets the triangles of a mesh without layers at 1/20 of the diagonal. Netgen fills them and pushes layers
 into its mesh; Gmsh makes patches of them at 40 degrees, meshes these at the same size, extrudes them and fills the
 rest. All are asked for three layers on all faces, the first a tenth of the size, growth 1.2. One measure judges all
-files: `covered` is the share of the input's area where the boundary's triangle is one of a prism, `folded` counts cells
-with a Jacobian that is not positive, `volume` compares the sum over cells with the input. Needs Debian's
-python3-netgen, python3-gmsh and python3-meshio; shapes that are STEP files need FreeCAD."""
+files: `covered` is the share of the input's area where the boundary's triangle belongs to a prism, `folded`
+counts cells with a Jacobian that is not positive, `volume` compares the sum over cells with the input. Needs
+Debian's python3-netgen, python3-gmsh and python3-meshio; shapes that are STEP files need FreeCAD."""
 
 from __future__ import annotations
 
@@ -121,7 +121,8 @@ class Row:
 
 
 def signed(jacobians: np.ndarray) -> np.ndarray:
-    """Turns Jacobians of one kind of cell so that most are positive: programs differ in the order of corners."""
+    """Changes the sign of the Jacobians of one kind of cell if most are negative: programs differ in the
+    order of corners."""
     return jacobians * (np.sign(np.median(jacobians)) or 1) if jacobians.size else jacobians
 
 

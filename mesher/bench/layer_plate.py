@@ -4,7 +4,7 @@
     layer_plate.py PROGRAM MODELS [--viscosity 0.002]
 
 Air enters a box of 3 x 2 x 1 with speed 1; the floor is the plate, the end is open, ceiling and sides slip.
-Where x is from 1.5 to 2.5 speeds, relative to those outside of the boundary layer there, are compared with
+Where x is from 1.5 to 2.5, speeds, relative to those outside of the boundary layer there, are compared with
 Blasius' solution. The air displaced by the layer makes the flow outside some percent faster along the plate,
 which Blasius' solution does not contain."""
 

@@ -268,11 +268,11 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program")
     parser.add_argument("--parts", nargs="*", type=Path, default=[])
-    parser.add_argument("--most", type=int, default=20, help="parts of each folder")
+    parser.add_argument("--most", type=int, default=20, help="at most so many parts of each folder")
     parser.add_argument("--size-share", type=float, default=20, help="the diagonal over the size")
     parser.add_argument("--count", type=int, default=3)
     parser.add_argument("--thickness-of-three", action="store_true",
-                        help="the layers are together as thick as three are")
+                        help="make the layers together as thick as three layers")
     parser.add_argument("--limit", type=float, default=120, help="seconds for a part")
     parser.add_argument("--only", nargs="*", help="shapes with these words in their names")
     parser.add_argument("--openfoam", action="store_true", help="let checkMesh judge the meshes")

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Compares the paper's profile (--profile paper: every hypothesis of the proofs and nothing else) with the
+"""Compares the paper's profile (--profile paper: all that the proofs assume, and nothing else) with the
 defaults and with --coarsen off, over acute families and clean shapes, with a size so large that it has no
 effect: tets, vertices, angles, CPU seconds, and the counts that the paper's lemmas bound. Prints a Markdown
 table."""

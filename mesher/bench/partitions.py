@@ -44,7 +44,7 @@ def tetrahedra(path: Path) -> tuple[np.ndarray, np.ndarray | None]:
 
 
 def pairs_with_a_face(tets: np.ndarray) -> np.ndarray:
-    """Returns pairs of rows of tets, (f, 2)."""
+    """Returns pairs of tets with a face in common, by rows, as an array (f, 2)."""
     corners = np.sort(tets, axis=1)
     sides = np.concatenate([np.delete(corners, k, axis=1) for k in range(4)])
     owner = np.tile(np.arange(len(tets)), 4)

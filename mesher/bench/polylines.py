@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Time and counts against the number of segments of loose polylines, and against their spread, by this
-version and by an older one on request: cells per vertex of the triangulation at its largest, the largest
-number of cells that one insertion destroyed (away from vertices where very many features meet), vertices that
-were inserted while skinny cells waited, and looks per location object. Prints Markdown tables."""
+version and by an older one on request: the largest number of cells per vertex at any time, the largest number
+of cells that one insertion destroyed (away from vertices where very many features meet), vertices that were
+inserted while skinny cells waited, and inspections for each point or ball that is located (`looks`). Prints
+Markdown tables."""
 
 from __future__ import annotations
 
@@ -46,8 +47,8 @@ def measure(mesher: Collarmesh, shape: AcuteInput, folder: Path) -> MeshRun | st
 
 
 def counts_of(run: MeshRun) -> list[str]:
-    """Returns the counts of a run. An older version counts less: over all vertices, hubs included, and not
-    the size of the mesh meanwhile."""
+    """Returns the counts of a run. An older version has fewer counts: its largest cavity includes those at
+    hubs, and it lacks the peak of cells per vertex."""
     counts = run.report["statistics"]["counts"]
     peak, early = counts.get("peak_cells_per_vertex"), counts.get("before_quality")
     looks = counts.get("looks")

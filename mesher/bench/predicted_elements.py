@@ -140,7 +140,7 @@ def main() -> int:
     parser.add_argument("--program", type=Path, help="collarmesh (default: of the build)")
     parser.add_argument("--orders", type=int, nargs="+", default=[1, 2])
     parser.add_argument("--shares", type=float, nargs="+", default=[1, 2, 0.5],
-                        help="of the default size; 1 is first")
+                        help="sizes as shares of the default size; 1 comes first")
     parser.add_argument("--limit", type=int, default=65, help="CPU seconds for one run of the program")
     parser.add_argument("--out", type=Path, default=Path("predicted_elements.tsv"))
     parser.add_argument("--only-predict", action="store_true", help="make no mesh that --out does not hold")

@@ -3,8 +3,8 @@
 
 Two ratios of coarsening's time per tetrahedron that it removes: to refinement's time per tetrahedron that it makes, and
 to the time of refinement and improvement per tetrahedron in runs without coarsening (because coarsening improves, too).
-The least of some runs each, wall time. Prints a Markdown table of quantiles over the parts; with --each a line for
-every part, too."""
+Each time is the least wall time of some runs. Prints a Markdown table of quantiles over the parts; with
+--each a line for every part, too."""
 
 from __future__ import annotations
 

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Estimates the gain of whole runs by more threads than this machine has cores, with a simulated schedule.
-With COLLARMESH_RECORD_COSTS the program runs on one core, divides its work as for that many threads, and
-records processor seconds: of each piece of each parallel part, and of the work between these parts. Here the
-pieces are dealt to workers, each of which takes the next piece when it is free. The work between parallel
-parts runs on one worker, and each parallel part costs a barrier. The estimate ignores that workers share
-caches, memory and the system. Prints Markdown tables."""
+With COLLARMESH_RECORD_COSTS the program runs on one core, divides its work as for several threads
+(--threads), and records processor seconds: of each piece of each parallel part, and of the work between these
+parts. Here the pieces are dealt to workers, each of which takes the next piece when it is free. The work
+between parallel parts runs on one worker, and each parallel part costs a barrier. The estimate ignores that
+workers share caches, memory and the system. Prints Markdown tables."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def main() -> int:
     parser.add_argument("surface", type=Path)
     parser.add_argument("size")
     parser.add_argument("--build", type=Path, default=root / "build" / "bench")
-    parser.add_argument("--threads", type=int, default=16, help="for which the work is divided")
+    parser.add_argument("--threads", type=int, default=16, help="number of threads for which the work is divided")
     parser.add_argument("--workers", type=int, nargs="+", default=[2, 16, 64], choices=workers)
     parser.add_argument("--barrier", type=float, default=5e-6, help="seconds for each parallel part")
     parser.add_argument("--places", type=int, default=12,

@@ -4,8 +4,8 @@ a plate (10 by 10 by 0.2), a shell (a tube of radius 5, 10 high and 0.2 thick) a
 CAD shapes, meshed by collarmesh and by Gmsh (HXT) at the same sizes with elements of both orders, solved by
 one solver (`poisson`). Values are given at the ends only; the solution does not change across the thickness.
 The error of the gradient per unknown is the error times the number of unknowns to the power of half the
-order, because over a surface the error falls with that power: it compares quality apart from numbers. Prints
-a Markdown table."""
+order, because over a surface the error falls with that power. So meshes with different numbers of tets can be
+compared. Prints a Markdown table."""
 
 from __future__ import annotations
 

@@ -6,10 +6,11 @@ thinness.py [--families wedge step ...] [--thinness 1e-1 1e-2 ...] [--program co
 
 Each body is about 10 target edge lengths wide, and its feature's thickness is a share of that length. A cell
 has the vertices that refinement inserted (in the last try), the tets and the CPU seconds of the whole run;
-then the exit code unless it is 0, and how many regions there are where some are missing. "power" is the power
-of 1 / thickness with which the number of vertices grows, down to --feature-size and below it, in the steepest
-step. Volumes are compared with the exact ones: the largest difference of a region, relative to that region;
-if a region is missing, the difference of all regions together. Rows go to --out as they come."""
+then the exit code unless it is 0, and how many regions there are where some are missing. "power" is the
+exponent with which the number of vertices grows with 1 / thickness in the steepest step: for steps down to
+--feature-size, and for those below. Volumes are compared with the exact ones: the largest difference of a
+region, relative to that region; if a region is missing, the difference of all regions together. Rows go to
+--out as they come."""
 
 from __future__ import annotations
 
