@@ -2,7 +2,7 @@
 
     tests/freecad/run.py PROGRAM freecad_workbench/bench/predicted_table.py --gui -- FOLDER
 
-FOLDER has STEP parts; some are taken, spread by size. Printed are seconds of the clock, and the processor time of
+FOLDER has STEP parts; some are taken, spread by size. Prints seconds of the clock, and the processor time of
 FreeCAD and of the mesher, which depends less on other work of the machine. Importing the part into FreeCAD does not
 count."""
 

@@ -92,7 +92,7 @@ MendedFace triangles_on(const TopoDS_Face& face) {
   return own;
 }
 
-/// Tries ways to triangulate a face, best first; the first one that fits is the result.
+/// A triangulator of a face, which tries several ways, best first, until the result fits the outline.
 class Mender {
  public:
   Mender(const TopoDS_Face& face, const Outline& outline, double deflection, double angle)

@@ -97,7 +97,7 @@ class EdgeCurve {
     points_.push_back(to_point(curve_.Value(parameter)));
   }
 
-  /// Adds points up to this parameter, so many that the chords between them are nearly straight.
+  /// Adds points up to this parameter, so many that the edge is nearly straight between them.
   void add_up_to(double parameter, int depth) {
     constexpr int deepest = 10;
     constexpr double straight = 0.02;  // largest distance from the edge, relative to the chord's length

@@ -117,7 +117,7 @@ TopoDS_Face other_side(const TopoDS_Face& face) {
   return other;
 }
 
-/// Gives a face the surface and the outline of another one. The other one's orientation counts.
+/// Gives a face the surface and the outline of another one. Reverses the face if the other one is reversed.
 void take_over(TopoDS_Face& face, const TopoDS_Face& by) {
   BRep_Builder builder;
   TopoDS_Face forward = TopoDS::Face(face.Oriented(TopAbs_FORWARD));

@@ -80,7 +80,7 @@ def is_plain_refinement(obj):
 
 def size_by_place(obj):
     """Converts a refinement by place of FreeCAD 1.1 to one of ours: returns (kind, size, size far away,
-    distance over which the size grows to that, properties); None for other objects."""
+    distance over which the size grows to the latter, properties); None for other objects."""
     kind = type_of(obj)
     if kind == "Fem::MeshDistance":
         between = obj.DistanceMaximum.Value - obj.DistanceMinimum.Value

@@ -13,7 +13,7 @@ from .option_table import OPTIONS
 from .translations import translate
 from .work_folder import WorkFolder
 
-GUARANTEE_MISSED = 7  # exit code if the mesh misses a guarantee; it is written unless it is unusable
+GUARANTEE_MISSED = 7  # exit code if the mesh misses a guarantee; a usable mesh is written all the same
 # Names of settings: sizes, and those that also hold when a mesh is adapted to other sizes.
 SIZES = ("size", "size_min", "elements_across_gap", "gradation",
          "solid_sizes", "face_sizes", "edge_sizes", "size_field")

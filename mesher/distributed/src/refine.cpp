@@ -66,8 +66,8 @@ LevelReport ParallelMesh::refine(const Shape& shape) {
   const Stopwatch stopwatch;
   PetscInt first = 0, end = 0;
   call(DMPlexGetHeightStratum(dm_, 0, &first, &end));
-  // Estimates the number of points: each tet adds two faces, and more than an edge and a fifth of a vertex.
-  // Numbers count the points of all ranks.
+  // Estimates the number of points of all ranks: for each tet there are two faces, slightly more than one
+  // edge, and a fifth of a vertex or slightly more. PETSc's numbers must reach all of them.
   const std::int64_t points = 8 * 9 * all_reduce(communicator_, std::int64_t{end - first}, MPI_SUM) / 2;
   agree(communicator_, [&] {
     if (order_ != 1) throw OptionError("meshes of second order are not refined; raise the order afterwards");

@@ -44,7 +44,7 @@ struct CellSide {
   bool listed() const { return kind == Kind::face || kind == Kind::quad; }
 };
 
-/// `corners`: counterclockwise as seen from outside.
+/// Returns a side of a cell. `corners`: counterclockwise for a viewer outside the cell.
 CellSide side_of(std::array<Index, 3> corners, Index cell, Kind kind) {
   std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
   const bool turned = corners[1] > corners[2];
@@ -460,7 +460,7 @@ std::map<Index, double> volumes_with_layers(const TetMesh& mesh) {
 void check_layer_volumes(const std::map<Index, double>& before, const TetMesh& mesh,
                          const std::map<Index, double>& allowed, CheckReport& report) {
   constexpr std::size_t listed = 20;
-  // A volume is a sum over cells, each with a relative error of some units in the last place of its edges.
+  // A volume is a sum over cells; rounding changes each term by a few units in the last place.
   constexpr double rounding = 1e-9;
   Findings findings(report, listed);
   const auto now = volumes_with_layers(mesh);

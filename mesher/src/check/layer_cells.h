@@ -35,8 +35,8 @@ void check_layer_cells(const TetMesh& mesh, CheckReport& report, std::size_t fin
 /// Returns the volumes of regions, by index, of straight tets, prisms and pyramids.
 std::map<Index, double> volumes_with_layers(const TetMesh& mesh);
 
-/// Checks that regions keep these volumes, within rounding plus the absolute difference allowed for each; 0
-/// for regions that are not listed. Adds findings.
+/// Checks that regions keep these volumes. `allowed`: by region, the absolute difference allowed beyond
+/// rounding; 0 for regions that it does not list. Adds findings.
 void check_layer_volumes(const std::map<Index, double>& before, const TetMesh& mesh,
                          const std::map<Index, double>& allowed, CheckReport& report);
 

@@ -33,7 +33,8 @@ class Core {
 
   const remeshing::TetComplex& complex() const { return piece_->complex; }
   const TetMesh& mesh() const { return mesh_; }
-  /// Returns the vertex of the core at a node of the front; the mesh's own where there are no layers.
+  /// Returns the vertex of the core at a node of the front: its copy or, where there are no layers, the node
+  /// itself.
   Index vertex_of(Index node) const { return vertex_of_[node]; }
 
  private:

@@ -160,7 +160,7 @@ class LayerCurving {
   }
 
   /// Finds the wall edges of the core between two nodes without layers. The core left them straight below
-  /// triangles of the front; elsewhere it may have placed their nodes differently than before.
+  /// triangles of the front; at other edges it may have placed the nodes differently than before.
   void find_wall_nodes_of_core() {
     for (std::size_t f = 0; f < mesh_.faces.size(); ++f)
       for (unsigned k = 0; k < 3; ++k) {
@@ -310,10 +310,10 @@ class LayerCurving {
   std::vector<std::array<Index, 6>> core_nodes_;
   std::unordered_map<std::uint64_t, Index> nodes_;  // by edge key
   Shares left_above_, left_on_walls_;               // for edges above walls, and for edges on them
-  std::vector<Edge> ends_;                          // the edges of the layers' nodes
+  std::vector<Edge> ends_;                          // by node of layers: its edge
   struct WallNode {
     Index node, a, b;  // the node, and the ends of its edge
-    bool is_new;       // the core had no feature for it
+    bool is_new;       // the core has the node on no feature
   };
   std::vector<WallNode> wall_nodes_;  // nodes on walls that belong to the core
   std::vector<Index> tets_at_wall_;   // tets of the core with such nodes

@@ -70,7 +70,8 @@ Vector DirectionSearch::nearest_to_origin(const std::vector<Vector>& of) const {
   return nearest;
 }
 
-/// Returns a point of the hull near the one nearest to the origin, on the side of the mean of the normals.
+/// Returns a point of the hull that is not quite the nearest to the origin, but nearer to the mean of the
+/// normals.
 Vector DirectionSearch::nearest_from_mean() const {
   Vector nearest{};
   for (const Vector& n : walls_) nearest = nearest + in_plane(n) / static_cast<double>(walls_.size());

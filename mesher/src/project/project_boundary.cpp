@@ -96,8 +96,8 @@ class BoundaryProjection {
     return bounds;
   }
 
-  // Returns the allowed distance of a vertex from a feature of the complex. If the tolerance is small, the
-  // complex may be farther from the exact geometry than the mesh may be from the complex.
+  // Returns the allowed distance of a vertex on the exact geometry from its feature in the complex. If the
+  // tolerance is small, the exact geometry may be farther away from the complex.
   double farthest_from(unsigned dimension, Index feature, const Point& p) const {
     if (dimension == 1) return most_off * tolerance_.least_on_curve(plc_.curves[feature]);
     if (!tolerance_.varies()) return most_off * tolerance_.largest();
@@ -200,7 +200,7 @@ class BoundaryProjection {
     return around;
   }
 
-  /// Moves back the vertex that moved farthest. Returns false if none of them had moved.
+  /// Moves back the vertex that moved farthest. Returns false if none of the vertices had moved.
   template <std::size_t n>
   bool move_farthest_back(const std::array<Index, n>& vertices, std::vector<Index>& around) {
     const auto moved = [&](Index p) { return distance(mesh_.points[p], room_.origin(p)); };
