@@ -41,7 +41,7 @@ struct MeshToCheck {
   std::vector<double> curve_allowance, patch_allowance;
   std::shared_ptr<const RegionLocator> regions;
   FeatureMatch match;
-  std::vector<std::uint8_t> collar;  ///< by tet, as TetMesh::tet_collar: its marks, if the tet is at
+  std::vector<std::uint8_t> collar;  ///< by tet, as TetMesh::tet_collar: its mark, if the tet is at
                                      ///< a crease of the complex
   bool coarsened = false;            ///< then the bounds of other tets hold in collars, too
   /// The first tet that is part of a prism or pyramid; these cells are judged elsewhere, as a whole.
