@@ -148,7 +148,7 @@ void refill(const TopoDS_Shape& shell, const std::vector<TopoDS_Face>& before,
   bare.Closed(closed);
 }
 
-/// Returns the faces of spheres through both poles that, unlike most others, are turned against the file.
+/// Returns the spherical faces through both poles that, unlike most of them, are turned against the file.
 std::vector<std::size_t> turned_spheres(const TopoDS_Shape& shell, const Senses& senses) {
   const std::vector<TopoDS_Face> faces = faces_in_shell(shell);
   std::vector<std::size_t> turned, kept;

@@ -216,7 +216,7 @@ class Tessellator {
     return points;
   }
 
-  /// Divides an edge all of whose faces BRepMesh failed on.
+  /// Divides an edge if BRepMesh failed on all of its faces.
   void cut_edge(const TopoDS_Edge& edge) {
     if (!edge_points_[slot(edges_.FindIndex(edge))].empty()) return;
     const BRepAdaptor_Curve curve(TopoDS::Edge(edge.Oriented(TopAbs_FORWARD)));

@@ -16,7 +16,7 @@ namespace collarmesh::distributed {
 
 namespace {
 
-/// Turns of a tet's corners. PETSc cuts the octahedron in the middle of a tet between the middles of the
+/// Rotations of a tet's corners. PETSc cuts the octahedron in the middle of a tet between the middles of the
 /// edges 01 and 23. Rotating the other three corners by these amounts, with the last corner fixed, chooses
 /// another pair of edges.
 /// PETSc numbers the corners of the eight children so that their own diagonals are those of Bey's rule

@@ -26,7 +26,7 @@ class Core {
   /// which it failed.
   /// `levels`: by node of the front, how strictly the tets there limit its height at first.
   bool push(Heights& heights, const std::vector<std::uint8_t>& levels);
-  /// From this level on, the limit keeps tets within their bounds without any improvement.
+  /// From this level on, heights are limited so that tets keep their bounds even without improvement.
   static constexpr std::uint8_t strictest = 1;
   const std::vector<Index>& failed() const { return failed_; }
   bool cancelled() const { return cancelled_; }

@@ -268,8 +268,8 @@ void Recut::add_edges() {
     }
 }
 
-// Fixes the vertices of sides without a neighbour at the new cuts. Faces there belong to no patch, so they
-// stay.
+// Fixes the vertices at the new cuts, where sides of tets have no neighbour. Faces there belong to no patch,
+// so they stay.
 void Recut::fix_cuts() {
   ByTriangle<unsigned> uses, uses_before;
   for (std::size_t t = 0; t < made_.tets.size(); ++t)

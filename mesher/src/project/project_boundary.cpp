@@ -178,7 +178,7 @@ class BoundaryProjection {
   }
 
   // Moves back corners of faces that are too far from a smooth patch, the corner that moved farthest first.
-  // Such faces occur because the exact geometry may be nearly as far from the complex as the mesh may be.
+  // Such faces occur because the exact geometry may itself be nearly as far from the patch as is allowed.
   // Returns the tets around these corners.
   std::vector<Index> keep_distances() {
     std::vector<Index> around;
