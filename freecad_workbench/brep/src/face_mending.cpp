@@ -105,7 +105,7 @@ class Mender {
 
   MendedFace run() {
     constexpr double coarse =
-        4;  // finer deflections rarely help, and take minutes if an outline crosses itself
+        4;  // factor of the deflection; finer ones rarely help, and take minutes if an outline crosses itself
     try_way([&] { return alone(copied(face_), "alone"); });
     try_way([&] { return alone(healed(face_), "alone after shape healing"); });
     try_way([&] { return in_parameter_plane(); });

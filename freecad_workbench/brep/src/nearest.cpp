@@ -37,11 +37,11 @@ void keep_nearer(std::optional<Point>& best, const std::optional<Point>& other, 
   if (other && (!best || squared_distance(*other, p) < squared_distance(*best, p))) best = other;
 }
 
-/// The limits of a descent to the nearest point, relative to the extent of the coordinates.
+/// Limits of a descent to the nearest point. Lengths are relative to the extent of the coordinates.
 namespace descent {
 constexpr int steps = 50, halvings = 20;
 constexpr double rounding = 1e-15;
-constexpr double converged = 1e-11;  // a step this small is as good as rounding allows
+constexpr double converged = 1e-11;  // smaller steps are lost in rounding
 }  // namespace descent
 
 /// Returns the weights of a triangle's corners for its point nearest to p.

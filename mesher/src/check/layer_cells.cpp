@@ -344,7 +344,7 @@ class CoreAngles {
  private:
   Index wall_of(Index v) const { return v < walls_.size() && walls_[v] != none ? walls_[v] : v; }
 
-  /// Finds the sides of the core, with the patches of their walls.
+  /// Finds the sides of tets that bound the core, with the patches of the walls below them.
   void find_surface() {
     std::vector<CellSide> sides;
     for (Index t = 0; t < mesh_.tets.size(); ++t)

@@ -1,5 +1,5 @@
-// Gives meshes with layers second order: first the core, then the cells of layers, whose edges interpolate
-// between those of the wall and those of the core.
+// Gives meshes with layers second order: first the core, then the cells of layers. Their edges bulge like
+// those of the wall below, but less and less towards the core, where they are straight.
 #include "layers/curving.h"
 
 #include <algorithm>
@@ -200,8 +200,8 @@ class LayerCurving {
           mesh_.features[node] = {2, patches[f]};
   }
 
-  /// Places the nodes of layers: in the middle of the straight edge, plus the bulges of wall and core in
-  /// proportion.
+  /// Places the nodes of layers: in the middle of the straight edge, plus the wall's bulge, which fades
+  /// towards the core.
   void place_nodes() {
     for (const auto& [node, a, b, is_new] : wall_nodes_)
       mesh_.points[node] = 0.5 * (mesh_.points[a] + mesh_.points[b]) + bulge_between(a, b);

@@ -21,7 +21,7 @@ constexpr double direction_precision = 1e-6;
 constexpr double narrow = 0.6;
 // The direction from means of normals is used if its least cosine exceeds this share of the best one's.
 constexpr double steep_enough = 0.85;
-// Planes, and lines, count as the same if the sine of their angle is smaller.
+// Two planes, or two lines, count as the same if the sine of the angle between them is smaller.
 constexpr double parallel = 1e-4;
 // Lines may leave planes by this sine, because the normals of curved patches are means over triangles.
 constexpr double nearly_parallel = 0.02;

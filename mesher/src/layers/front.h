@@ -57,7 +57,7 @@ struct FrontNode {
   double cosine = 0;
   double least_cosine = 0;  ///< the least cosine of all sides
   bool blocked = false;     ///< there can be no layer
-  /// The features without layers along which the node slides.
+  /// The feature without layers along which the node slides.
   TetMesh::VertexFeature slides_on = {};
 };
 
