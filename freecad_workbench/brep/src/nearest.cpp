@@ -181,8 +181,8 @@ class EdgeCurve {
     return best;
   }
 
-  // A chord is at most half of `reach_` away from its part of the edge. That is estimated from a few points
-  // of the part, with a margin.
+  // A chord is at most half of `reach_` away from its part of the edge. This distance is estimated from a few
+  // points of the part, with a margin.
   static constexpr double chords_apart = 3;
 
   BRepAdaptor_Curve curve_;

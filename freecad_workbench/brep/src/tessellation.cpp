@@ -498,7 +498,7 @@ class Tessellator {
         is_vertex_[edge_points_[slot(edges_.FindIndex(edge))].front()] = true;
   }
 
-  /// Collects the data of one soup, with the points it uses.
+  /// A collector of the data of one soup, with the points it uses.
   class Collector {
    public:
     Collector(const Tessellator& all, std::string name) : all_(all), used_(all.points_.size(), none) {

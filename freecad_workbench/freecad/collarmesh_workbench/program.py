@@ -225,7 +225,7 @@ class Job:
         self.command += ["--report", self._page]
 
     def move_page(self, path, name):
-        """Moves that page to a permanent place. `name` is what it calls the shape."""
+        """Moves the report's page to a permanent place. `name`: the shape's name on the page."""
         with open(self._page, encoding="utf-8") as page:
             text = page.read().replace(self.shape, _in_page(name)).replace(self.folder.name + os.sep, "")
         with open(path, "w", encoding="utf-8") as moved:

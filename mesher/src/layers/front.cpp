@@ -106,7 +106,7 @@ bool Front::is_bare(Index tet, unsigned corner) const {
   return is_wall(complex_[tet].faces[corner]) && side_of_[4 * std::size_t{tet} + corner] == none;
 }
 
-/// For each node of a wall, makes a node of the front in each sector of tets there that has a side of the
+/// Makes, for each node of a wall, a node of the front in each sector of tets there that has a side of the
 /// wall.
 void Front::find_nodes() {
   edges_at_ = CellsAtVertices(mesh_.edges, mesh_.points.size());

@@ -240,8 +240,8 @@ class BoundaryProjection {
     around.insert(around.end(), tets.begin(), tets.end());
   }
 
-  // In each spoilt tet, moves back the vertex that moved farthest to its exact feature or, if there is none,
-  // all corners. Returns the tets that are still spoilt.
+  // Moves back one vertex of each spoilt tet: among those on their exact features the one with the longest
+  // move. If there is none, moves back all corners. Returns the tets that are still spoilt.
   std::vector<Index> give_way(const std::vector<Index>& spoilt) {
     std::vector<Index> around;
     for (const Index t : spoilt) {
