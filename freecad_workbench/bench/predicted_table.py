@@ -28,7 +28,7 @@ ROW = ", ".join(f"{which} {{:.2f}} s (processors: FreeCAD {{:.2f}} s, mesher {{:
 
 
 def spread(paths):
-    """Returns this many of the files, from the smallest to the largest."""
+    """Returns PARTS of the files, or all if there are fewer, from the smallest to the largest."""
     paths = sorted(paths, key=lambda path: path.stat().st_size)
     return [paths[i * (len(paths) - 1) // (PARTS - 1)] for i in range(PARTS)] if len(paths) > PARTS else paths
 
