@@ -43,7 +43,7 @@ struct MeshToCheck {
   FeatureMatch match;
   std::vector<std::uint8_t> collar;  ///< by tet, as TetMesh::tet_collar: its mark, if the tet is at
                                      ///< a crease of the complex
-  bool coarsened = false;            ///< then the bounds of other tets hold in collars, too
+  bool coarsened = false;            ///< if true, the bounds of other tets hold in collars, too
   /// The first tet that is part of a prism or pyramid; these cells are judged elsewhere, as a whole.
   Index first_part = none;
 

@@ -358,8 +358,8 @@ void Core::improve_by(double angle, bool thoroughly, double ratio) {
   cancelled_ = cancelled_ || improve(*piece_, options, execution_, thoroughly).cancelled;
 }
 
-/// Returns the tets beyond the bounds on angles, except unchanged ones that were so from the start: the mesh
-/// was certified with them.
+/// Returns the tets beyond the bounds on angles. Leaves out unchanged tets that were beyond them from the
+/// start, because the mesh was certified with these.
 std::vector<Index> Core::poor_tets() const {
   const auto& complex = piece_->complex;
   std::vector<std::uint8_t> poor(complex.size(), 0);
