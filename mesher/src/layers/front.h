@@ -52,8 +52,8 @@ struct WallSide {
 struct FrontNode {
   Index vertex = none;
   Vector direction{};  ///< unit; into the sector
-  /// The steepness above the flattest patch: for each patch, the mean cosine between the direction and the
-  /// normals of its sides, weighted by angles; the least of these means.
+  /// Each patch has a mean cosine between the direction and the normals of its sides, weighted by angles.
+  /// This is the least of these means.
   double cosine = 0;
   double least_cosine = 0;  ///< the least cosine of all sides
   bool blocked = false;     ///< there can be no layer
