@@ -2,7 +2,7 @@
 
     tests/freecad/run.py PROGRAM freecad_workbench/bench/predicted_table.py --gui -- FOLDER
 
-FOLDER has STEP parts; some are taken, spread by size. Printed are seconds of the clock, and the processor time of
+FOLDER has STEP parts; some are taken, spread by size. Prints seconds of the clock, and the processor time of
 FreeCAD and of the mesher, which depends less on other work of the machine. Importing the part into FreeCAD does not
 count."""
 
@@ -28,7 +28,7 @@ ROW = ", ".join(f"{which} {{:.2f}} s (processors: FreeCAD {{:.2f}} s, mesher {{:
 
 
 def spread(paths):
-    """Returns this many of the files, from the smallest to the largest."""
+    """Returns PARTS of the files, or all if there are fewer, from the smallest to the largest."""
     paths = sorted(paths, key=lambda path: path.stat().st_size)
     return [paths[i * (len(paths) - 1) // (PARTS - 1)] for i in range(PARTS)] if len(paths) > PARTS else paths
 

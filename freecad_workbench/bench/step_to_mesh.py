@@ -2,8 +2,9 @@
 
     tests/freecad/run.py PROGRAM freecad_workbench/bench/step_to_mesh.py [-- FILE.step]
 
-Each one's size is first chosen such that it makes 85k to 115k tetrahedra. Times are of everything a click waits for:
-reading the STEP file, the object, meshing, the mesh in the document. Without a file: a plate with twelve holes.
+For each mesher, a size is first chosen with which it makes 85k to 115k tetrahedra. Times include all that a user waits
+for: reading the STEP file, making the object, meshing, putting the mesh into the document.
+Without a file, the part is a plate with twelve holes.
 """
 
 import os

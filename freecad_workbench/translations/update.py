@@ -2,8 +2,8 @@
 
 Takes the texts of all calls of `translate`, `mark` and `doc` into each collarmesh_LANGUAGE.ts, where new ones are
 "unfinished" until someone translates them (Qt Linguist does it, or an editor), drops those that are gone, and makes the
-.qm files that FreeCAD reads by Qt's lrelease. They are kept with the sources: whoever clones the add-on has no
-lrelease.
+.qm files that FreeCAD reads by Qt's lrelease. The .qm files are kept with the sources, because whoever clones the
+add-on has no lrelease.
 --check changes nothing and fails where a text has no translation.
 """
 

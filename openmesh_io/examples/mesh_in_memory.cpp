@@ -15,7 +15,7 @@
 using PolyMesh = OpenMesh::PolyMesh_ArrayKernelT<>;  // with floats; any traits work
 using TriMesh = OpenMesh::TriMesh_ArrayKernelT<>;
 
-/// A box of quads. The face property "side" numbers its sides from 1.
+/// Makes a box of quads. The face property "side" numbers its sides from 1.
 PolyMesh make_box(float width, float depth, float height) {
   PolyMesh mesh;
   std::vector<PolyMesh::VertexHandle> v;

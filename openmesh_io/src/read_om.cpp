@@ -66,7 +66,7 @@ void add_points(const std::string& path, const Mesh& mesh, PolygonSoup& soup) {
   }
 }
 
-/// The halfedges of a damaged file need not form cycles.
+/// Returns the corners of a face. Fails if the face's halfedges form no cycle, as in a damaged file.
 std::vector<Index> corners_of(const std::string& path, const Mesh& mesh, OpenMesh::FaceHandle face) {
   std::vector<Index> corners;
   const OpenMesh::HalfedgeHandle first = mesh.halfedge_handle(face);

@@ -92,7 +92,7 @@ MendedFace triangles_on(const TopoDS_Face& face) {
   return own;
 }
 
-/// Tries ways to triangulate a face, best first; the first one that fits is the result.
+/// A triangulator of a face, which tries several ways, best first, until the result fits the outline.
 class Mender {
  public:
   Mender(const TopoDS_Face& face, const Outline& outline, double deflection, double angle)
@@ -105,7 +105,7 @@ class Mender {
 
   MendedFace run() {
     constexpr double coarse =
-        4;  // finer deflections rarely help, and take minutes if an outline crosses itself
+        4;  // factor of the deflection; finer ones rarely help, and take minutes if an outline crosses itself
     try_way([&] { return alone(copied(face_), "alone"); });
     try_way([&] { return alone(healed(face_), "alone after shape healing"); });
     try_way([&] { return in_parameter_plane(); });
@@ -288,8 +288,8 @@ class Mender {
   const TopoDS_Face& face_;
   const Outline& outline_;
   double deflection_, angle_;
-  double near_ = 0;           // distance below which points of the outline and of the face alone count as the
-                              // same
+  double near_ = 0;           // distance below which a point of the outline and one of the face's own count
+                              // as the same
   std::vector<Ends> chords_;  // chords between points
   MendedFace best_;
   std::size_t least_off_ = std::numeric_limits<std::size_t>::max();

@@ -207,7 +207,7 @@ class Solids {
   std::vector<Bnd_Box> boxes_;
 };
 
-/// Sorts the parts of no face by their position: inside, outside or on faces.
+/// A sorter of the parts of no face by their position: inside, outside or on faces.
 class Sorter {
  public:
   Sorter(const std::string& file, Topology& topology)

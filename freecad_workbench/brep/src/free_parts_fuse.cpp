@@ -56,8 +56,8 @@ void replace_faces(const PartsOf& parts_of, Topology& topology) {
 
 std::optional<PartsOf> fuse_free_parts(const Shapes& parts, const Shapes& unchanged, Topology& topology) {
   const Shapes closed = closed_parts(topology);
-  Shapes arguments{compound_of(closed)};  // all in one argument, so that its faces do not meet one another
-                                          // again
+  Shapes arguments{compound_of(closed)};  // one argument, so that the fuse does not intersect its faces
+                                          // with one another again
   append(arguments, parts);
   const Fuse fuse = general_fuse(arguments);
   if (!fuse || spoils_a_solid(*fuse, closed)) return std::nullopt;

@@ -29,7 +29,7 @@ namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-/// Runs OpenCASCADE's integrals, which fail on some shapes.
+/// Runs an integral of OpenCASCADE. Returns `otherwise` if it fails, as it does on some shapes.
 template <class Integral, class Value>
 Value integrate_or(const Value& otherwise, const Integral& integral) {
   try {

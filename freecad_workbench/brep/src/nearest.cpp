@@ -37,11 +37,11 @@ void keep_nearer(std::optional<Point>& best, const std::optional<Point>& other, 
   if (other && (!best || squared_distance(*other, p) < squared_distance(*best, p))) best = other;
 }
 
-/// The limits of a descent to the nearest point, relative to the extent of the coordinates.
+/// Limits of a descent to the nearest point. Lengths are relative to the extent of the coordinates.
 namespace descent {
 constexpr int steps = 50, halvings = 20;
 constexpr double rounding = 1e-15;
-constexpr double converged = 1e-11;  // a step this small is as good as rounding allows
+constexpr double converged = 1e-11;  // smaller steps are lost in rounding
 }  // namespace descent
 
 /// Returns the weights of a triangle's corners for its point nearest to p.
@@ -97,7 +97,7 @@ class EdgeCurve {
     points_.push_back(to_point(curve_.Value(parameter)));
   }
 
-  /// Adds points up to this parameter, so many that the chords between them are nearly straight.
+  /// Adds points up to this parameter, so many that the edge is nearly straight between them.
   void add_up_to(double parameter, int depth) {
     constexpr int deepest = 10;
     constexpr double straight = 0.02;  // largest distance from the edge, relative to the chord's length
@@ -181,8 +181,8 @@ class EdgeCurve {
     return best;
   }
 
-  // A chord is at most half of `reach_` away from its part of the edge. That is estimated from a few points
-  // of the part, with a margin.
+  // A chord is at most half of `reach_` away from its part of the edge. This distance is estimated from a few
+  // points of the part, with a margin.
   static constexpr double chords_apart = 3;
 
   BRepAdaptor_Curve curve_;

@@ -12,7 +12,7 @@ namespace collarmesh::brep {
 class EdgeCurve;
 class FaceSurface;
 
-/// Finds nearest points on the exact edges and surfaces, from the tessellation.
+/// A search for nearest points on the exact edges and surfaces. It starts from the tessellation.
 class NearestOnShape {
  public:
   explicit NearestOnShape(const Tessellation& tessellation);

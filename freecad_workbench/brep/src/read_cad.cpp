@@ -24,7 +24,7 @@ namespace collarmesh::brep {
 
 namespace {
 
-/// Captures standard output, where OpenCASCADE reports the errors of a BREP file.
+/// A capture of standard output, where OpenCASCADE reports the errors of a BREP file.
 class CapturedOutput {
  public:
   CapturedOutput() : before_(std::cout.rdbuf(text_.rdbuf())) {}

@@ -117,7 +117,7 @@ TopoDS_Face other_side(const TopoDS_Face& face) {
   return other;
 }
 
-/// Gives a face the surface and the outline of another one. The other one's orientation counts.
+/// Gives a face the surface and the outline of another one. Reverses the face if the other one is reversed.
 void take_over(TopoDS_Face& face, const TopoDS_Face& by) {
   BRep_Builder builder;
   TopoDS_Face forward = TopoDS::Face(face.Oriented(TopAbs_FORWARD));
@@ -148,7 +148,7 @@ void refill(const TopoDS_Shape& shell, const std::vector<TopoDS_Face>& before,
   bare.Closed(closed);
 }
 
-/// Returns the faces of spheres through both poles that, unlike most others, are turned against the file.
+/// Returns the spherical faces through both poles that, unlike most of them, are turned against the file.
 std::vector<std::size_t> turned_spheres(const TopoDS_Shape& shell, const Senses& senses) {
   const std::vector<TopoDS_Face> faces = faces_in_shell(shell);
   std::vector<std::size_t> turned, kept;

@@ -216,7 +216,7 @@ class Tessellator {
     return points;
   }
 
-  /// Divides an edge all of whose faces BRepMesh failed on.
+  /// Divides an edge if BRepMesh failed on all of its faces.
   void cut_edge(const TopoDS_Edge& edge) {
     if (!edge_points_[slot(edges_.FindIndex(edge))].empty()) return;
     const BRepAdaptor_Curve curve(TopoDS::Edge(edge.Oriented(TopAbs_FORWARD)));
@@ -498,7 +498,7 @@ class Tessellator {
         is_vertex_[edge_points_[slot(edges_.FindIndex(edge))].front()] = true;
   }
 
-  /// Collects the data of one soup, with the points it uses.
+  /// A collector of the data of one soup, with the points it uses.
   class Collector {
    public:
     Collector(const Tessellator& all, std::string name) : all_(all), used_(all.points_.size(), none) {

@@ -16,7 +16,7 @@ struct Samples {
   TopoDS_Shape shape;
   std::vector<Point> points;
   std::vector<std::array<double, 2>> parameters;  ///< for an edge only the first of each pair counts
-  std::vector<std::array<Index, 3>> triangles;    ///< for a face, corners among the points; two at a seam
+  std::vector<std::array<Index, 3>> triangles;    ///< for a face: indices of points, of which a seam has two
 };
 
 struct Tessellation {

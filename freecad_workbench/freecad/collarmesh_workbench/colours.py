@@ -18,7 +18,7 @@ def of(kind):
 
 
 def css(kind):
-    """Returns these colours for style sheets and rich text."""
+    """Returns the colours of `of` for style sheets and rich text."""
     ink, paper = of(kind)
     return f"color: {ink}; background-color: {paper}" if paper else f"color: {ink}"
 

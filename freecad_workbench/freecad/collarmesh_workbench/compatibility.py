@@ -80,7 +80,7 @@ def is_plain_refinement(obj):
 
 def size_by_place(obj):
     """Converts a refinement by place of FreeCAD 1.1 to one of ours: returns (kind, size, size far away,
-    distance over which the size grows to that, properties); None for other objects."""
+    distance over which the size grows to the latter, properties); None for other objects."""
     kind = type_of(obj)
     if kind == "Fem::MeshDistance":
         between = obj.DistanceMaximum.Value - obj.DistanceMinimum.Value
@@ -135,7 +135,8 @@ def transaction(document, name):
 
 def write_constraints_on(*finders):
     """Changes FreeCAD's writers for solvers, which look for the nodes of constraints by place. They use the
-    nodes of the elements that `finder` returns for (mesh, object, name of a face), unless it returns None."""
+    nodes of the elements that one of the finders returns for (mesh, object, name of a face), unless all return
+    None."""
     by_place, loads_by_place = meshtools.get_femnodes_by_refshape, meshtools.get_force_obj_face_nodeload_table
 
     def elements_of(*reference):
@@ -206,8 +207,8 @@ class Manipulator:
     """An object with the methods that FreeCAD 1.0 and later call when a workbench builds its bars."""
 
     def __init__(self, places):
-        """`places`: for each command, FreeCAD's command after which it is put. Several after one keep this
-        order."""
+        """`places`: for each command, FreeCAD's command after which it is put. Commands with the same
+        place keep their order."""
         self.places = places
 
     def modifyToolBars(self):

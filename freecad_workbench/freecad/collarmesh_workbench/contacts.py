@@ -223,7 +223,7 @@ def _is_analytic(element):
 
 
 def _distance(geometry, point):
-    """Returns the distance to a surface or a curve, beyond its ends."""
+    """Returns the distance of a point to a surface or a curve, continued beyond its ends."""
     place = geometry.parameter(point)
     return point.distanceToPoint(geometry.value(*(place if isinstance(place, tuple) else (place,))))
 

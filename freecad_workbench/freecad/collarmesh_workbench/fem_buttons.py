@@ -22,7 +22,7 @@ EVERY = 200  # milliseconds between checks
 
 
 def freecads_place(command):
-    """Returns FreeCAD's own command that ours follows, directly or after others of ours."""
+    """Returns the command of FreeCAD after which ours is put, directly or behind others of ours."""
     place = BESIDE[command]
     return freecads_place(place) if place in BESIDE else place
 

@@ -9,7 +9,7 @@ ICON = os.path.join(views.ICONS, "layers.svg")
 
 
 class LayersViewProvider(size_view.SizeViewProvider):
-    """Shows layers as sizes near faces are shown, with another panel."""
+    """Shows layers in the same way as sizes near faces, but with a panel of their own."""
 
     def getIcon(self):
         return ICON

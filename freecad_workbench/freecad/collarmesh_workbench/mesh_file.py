@@ -23,7 +23,7 @@ def filters():
 
 
 def extension_in(text):
-    """Returns the extension of one of these filters, without the dot."""
+    """Returns the extension in one of the `filters()`, without the dot."""
     return text[text.index("*.") + 2 : text.rindex(")")]
 
 

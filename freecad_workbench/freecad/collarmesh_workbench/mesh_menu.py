@@ -68,7 +68,7 @@ def mesh_again(obj):
 
 
 def refine_by_result(obj):
-    """Opens the panel of the object at the fields for this."""
+    """Opens the panel of the object at the fields that refine its mesh by a result."""
     panel = edit(obj)
     if panel is not None:
         panel.refine.unfold()

@@ -45,8 +45,8 @@ def start(obj, program="", settings=None):
 
 
 def prepare(obj, settings, state, sources=(), program="", adapts=False):
-    """Returns such a Job. `state`: the State that the object then records for its mesh; `sources`: the sizes by
-    place, with their labels; `adapts`: see Job. Raises MesherError."""
+    """Returns a Job as `start` does. `state`: the State that the object records for the mesh of the Job; `sources`: the
+    sizes by place, with their labels; `adapts`: see Job. Raises MesherError."""
     part = mesh_properties.part_to_mesh(obj)
     size_check.check(settings, sources, part)
     asked = settings.dimension

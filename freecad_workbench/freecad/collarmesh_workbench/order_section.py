@@ -36,7 +36,7 @@ class OrderSection(QtGui.QWidget):
         return self.combo.currentIndex() + 1
 
     def show_dimension(self, dimension):
-        """Shows the numbers of nodes of such elements."""
+        """Shows the numbers of nodes of elements of this dimension."""
         for i, text in enumerate((translate("collarmesh", "first (straight, {n} nodes)"),
                                   translate("collarmesh", "second (curved, {n} nodes)"))):
             self.combo.setItemText(i, text.format(n=NODES[dimension][i]))

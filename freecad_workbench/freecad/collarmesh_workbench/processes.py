@@ -1,6 +1,6 @@
 """Processes of Qt that may outlive the object that started them.
-Qt frees a process from its main loop, when nothing else refers to it any more. Objects that its connections
-hold are freed in the middle of that; if its parent were one of them, it would free the process a second time.
+Qt's main loop frees a process when nothing refers to it any more. While doing so, it frees the objects that the
+process's connections hold. If one of these were its parent, the parent would free the process a second time.
 So the application is the parent of all processes, and a process that ends has no connections any more."""
 
 import contextlib

@@ -13,7 +13,7 @@ from .option_table import OPTIONS
 from .translations import translate
 from .work_folder import WorkFolder
 
-GUARANTEE_MISSED = 7  # exit code if the mesh misses a guarantee; it is written unless it is unusable
+GUARANTEE_MISSED = 7  # exit code if the mesh misses a guarantee; a usable mesh is written all the same
 # Names of settings: sizes, and those that also hold when a mesh is adapted to other sizes.
 SIZES = ("size", "size_min", "elements_across_gap", "gradation",
          "solid_sizes", "face_sizes", "edge_sizes", "size_field")
@@ -225,7 +225,7 @@ class Job:
         self.command += ["--report", self._page]
 
     def move_page(self, path, name):
-        """Moves that page to a permanent place. `name` is what it calls the shape."""
+        """Moves the report's page to a permanent place. `name`: the shape's name on the page."""
         with open(self._page, encoding="utf-8") as page:
             text = page.read().replace(self.shape, _in_page(name)).replace(self.folder.name + os.sep, "")
         with open(path, "w", encoding="utf-8") as moved:

@@ -69,8 +69,8 @@ class Handles:
     """All handles of an object, in its node of the scene, until `remove`. A drag changes the object's properties at
     once; `changed()` is called after each step.
 
-    A timer reads the positions of the handles: the callbacks of pivy's draggers end FreeCAD (pivy 0.6 runs them without
-    Python's lock)."""
+    A timer reads the positions of the handles: the callbacks of pivy's draggers would crash FreeCAD (pivy 0.6 runs
+    them without Python's lock)."""
 
     def __init__(self, obj, kind, changed):
         self.object = obj

@@ -175,8 +175,8 @@ def kind_and_number(name):
 
 
 def subshapes(obj, part, kinds, other_part, other_kind, gone):
-    """Yields the kind and the number of each sub-shape in an object's references. Raises MesherError with one of the
-    texts for one that is not of the part, not of these kinds, or no longer there."""
+    """Yields the kind and the number of each sub-shape in an object's references. Raises MesherError for
+    a sub-shape that is of another part, of another kind, or gone, with the text for this case."""
     shape = inputs.shape_of(part)
     for linked, name in references(obj):
         kind, number = kind_and_number(name)

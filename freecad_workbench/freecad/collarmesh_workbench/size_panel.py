@@ -75,7 +75,7 @@ class SizePanel(EditPanel):
         self.fields[name] = field
 
     def _typed(self, field, store):
-        """Stores a value if it is valid; shows it in red if not."""
+        """Stores a value if it is valid; if not, the field shows it in red."""
         with contextlib.suppress(ValueError):
             self._changed(store, field.value())
 

@@ -2,7 +2,7 @@
 
 For each number of tets (about, in millions) and of ranks, prints the quickest of several runs of collarmesh-mpi with
 two or three levels, from its report. Efficiency refers to the last level: its time on one rank, divided by the number
-of ranks times its time on these. Loading is measured with load.py (petsc4py) and dolfinx, including the start of
+of ranks times its time on all of them. Loading is measured with load.py (petsc4py) and dolfinx, including the start of
 Python.
 """
 

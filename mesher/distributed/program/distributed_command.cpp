@@ -176,7 +176,7 @@ struct Coarse {
   PipelineOptions options;
 };
 
-/// Gives all ranks the repair of rank 0.
+/// Gives all ranks the repair options of rank 0.
 void share(RepairOptions& repair, bool is_first) {
   struct Numbers {
     RepairMode mode;

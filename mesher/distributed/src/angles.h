@@ -23,7 +23,7 @@ inline ExtremeAngles extreme_angles(const std::array<Point, 4>& p) {
   std::array<double, 4> lengths;
   for (std::size_t i = 0; i < 4; ++i) lengths[i] = norm(normals[i]);
   assert(std::min({lengths[0], lengths[1], lengths[2], lengths[3]}) > 0);
-  double least = 1, most = -1;  // cosines of the least and the largest angle
+  double least = 1, most = -1;  // the least and the largest cosine of an angle
   for (std::size_t i = 0; i < 4; ++i)
     for (std::size_t j = i + 1; j < 4; ++j) {
       const double cosine = -dot(normals[i], normals[j]) / (lengths[i] * lengths[j]);

@@ -32,7 +32,7 @@ constexpr double tolerated = 10;
 constexpr double least_score = 0.2;
 // The score of a flat tet; inverted tets have lower scores.
 constexpr double flat_score = -100;
-// The unit to which squared penalties are rounded. Doubles add its multiples without rounding.
+// The unit to which penalties are rounded. Doubles add its multiples without rounding.
 constexpr double unit_of_penalty = 0x1p-16;
 // The maximum number of sweeps that make room, and the steps that a vertex tries, relative to its shortest
 // edge.
@@ -187,7 +187,7 @@ class Placement {
     const ExtremeAngles angles = extreme_angles(p);
     return 1 + std::min({0.0, angles.least - least(tet), most(tet) - angles.most}) / tolerated;
   }
-  /// Returns the squared penalty of a tet, relative to a score of 1, as a whole number.
+  /// Returns the penalty of a tet, the fourth power of 1 minus its score, in whole units.
   double penalty(Index tet, const Corners& p) const {
     const double missing = 1 - score(tet, p);
     return std::nearbyint(missing * missing * missing * missing / unit_of_penalty);
@@ -248,8 +248,8 @@ class Placement {
     return independent(wishes, sweep);
   }
 
-  /// Returns a subset of the wished vertices without two of one tet: of two, the one with the greater hash of
-  /// its place. All ranks that have a vertex decide alike if they have the same wishes.
+  /// Returns the wished vertices, but only one of two that share a tet: the one with the greater hash of its
+  /// place. All ranks that have a vertex decide alike if they have the same wishes.
   std::vector<Index> independent(const std::vector<PetscInt>& wishes, unsigned sweep) const {
     std::vector<Index> vertices;
     std::vector<PetscInt> yields(mesh_->points.size(), 0);
@@ -405,8 +405,8 @@ class Placement {
     return around;
   }
 
-  /// Moves vertices that moved back forward again, if their tets permit that by now. Returns false if there
-  /// are none.
+  /// Moves vertices that moved back forward again, if their tets permit that by now. Returns whether any
+  /// vertex moved.
   bool try_again(unsigned sweep) {
     std::vector<PetscInt> wishes(mesh_->points.size(), 0);
     for (std::size_t v = 0; v < wishes.size(); ++v) wishes[v] = has_way_[v] && back_[v] > 0 ? 1 : 0;

@@ -102,7 +102,8 @@ class DistributedCurving {
         curved_.push_back(t);
   }
 
-  /// Returns the edges of each invalid tet whose nodes have the longest displacement.
+  /// Marks, in each invalid tet, the edges whose nodes have the longest displacement. Returns the marks, by
+  /// edge.
   std::vector<PetscInt> faulty() const {
     std::vector<PetscInt> marks(ways_.size(), 0);
     const auto way_of = [&](std::size_t e) { return shares[back_[e]] * norm(ways_[e]); };

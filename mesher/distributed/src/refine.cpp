@@ -16,7 +16,7 @@ namespace collarmesh::distributed {
 
 namespace {
 
-/// Turns of a tet's corners. PETSc cuts the octahedron in the middle of a tet between the middles of the
+/// Rotations of a tet's corners. PETSc cuts the octahedron in the middle of a tet between the middles of the
 /// edges 01 and 23. Rotating the other three corners by these amounts, with the last corner fixed, chooses
 /// another pair of edges.
 /// PETSc numbers the corners of the eight children so that their own diagonals are those of Bey's rule
@@ -66,8 +66,8 @@ LevelReport ParallelMesh::refine(const Shape& shape) {
   const Stopwatch stopwatch;
   PetscInt first = 0, end = 0;
   call(DMPlexGetHeightStratum(dm_, 0, &first, &end));
-  // Estimates the number of points: each tet adds two faces, and more than an edge and a fifth of a vertex.
-  // Numbers count the points of all ranks.
+  // Estimates the number of points of all ranks: for each tet there are two faces, slightly more than one
+  // edge, and a fifth of a vertex or slightly more. PETSc's numbers must reach all of them.
   const std::int64_t points = 8 * 9 * all_reduce(communicator_, std::int64_t{end - first}, MPI_SUM) / 2;
   agree(communicator_, [&] {
     if (order_ != 1) throw OptionError("meshes of second order are not refined; raise the order afterwards");

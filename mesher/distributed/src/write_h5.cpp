@@ -202,7 +202,8 @@ void require_space(DM dm, const fs::path& path) {
   call(DMPlexGetHeightStratum(dm, 0, &first, &end));
   const double needed =
       bytes_per_tet * static_cast<double>(all_reduce(communicator, std::int64_t{end - first}, MPI_SUM));
-  // The file has the faces, edges and ends of all points in one array, about 12.5 entries per tet.
+  // The file has one array of the faces of all tets, the edges of all faces and the ends of all edges: about
+  // 12.5 entries per tet.
   const bool countable =
       needed / bytes_per_tet * 13 < static_cast<double>(std::numeric_limits<PetscInt>::max());
   agree(communicator, [&] {

@@ -31,7 +31,7 @@ std::vector<Side> sides_of(const TetMesh& mesh) {
   return sides;
 }
 
-/// The segments of bent curves whose patches have the same tags; finds the nearest curve.
+/// Bent curves that bound patches with the same tags. Finds the nearest of them.
 class CurvesOfTags {
  public:
   void add(const Plc& plc, Index curve) {

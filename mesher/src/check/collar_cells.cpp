@@ -35,8 +35,9 @@ class CreaseCorners {
     std::sort(edges_.begin(), edges_.end());
   }
 
-  /// Returns 1 for a star, 2 for a book, 0 for neither. Each vertex on a crease is the centre of a ball. The
-  /// only corners of the ball's cells on a crease are its centre and, in books, a neighbour of the centre.
+  /// Returns 1 for a star, 2 for a book, 0 for neither. Each vertex on a crease is the centre of a ball. A
+  /// star has one corner on a crease, the centre of its ball; a book has two, the centre and a neighbour of
+  /// it.
   std::uint8_t kind_in_balls(const std::array<Index, 4>& tet) const {
     std::array<Index, 4> corners;
     const auto end =

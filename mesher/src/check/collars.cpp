@@ -70,7 +70,8 @@ class CollarCheck {
     }
   }
 
-  // Leaves out features outside all regions, which are not in the mesh.
+  // Lists the vertices, segments and triangles of the complex, except those of features outside all regions,
+  // which are not in the mesh.
   void collect_elements() {
     for (Index v = 0; v < plc_.vertices.size(); ++v) {
       const Index p = plc_.vertices[v].point;
@@ -94,7 +95,7 @@ class CollarCheck {
     return element.dimension == 2 && plc_.curve_on_patch(v.feature, element.feature);
   }
 
-  // Checks balls, with their gap balls, against features and against each other.
+  // Checks the distances of balls from features and from each other.
   void look_around() {
     std::vector<Box> boxes;
     for (Index b = 0; b < balls_.size(); ++b) {
@@ -131,8 +132,8 @@ class CollarCheck {
         At{centre(ball)}, radius(ball), gap, kinds[element.dimension], element.feature);
   }
 
-  // Returns whether two balls belong to one crease, as a vertex's ball and the balls on its curves do, and
-  // all balls on one curve.
+  // Returns whether two balls belong to one crease: both are on one curve, or one is at an end of the other's
+  // curve.
   bool of_one_crease(Index a, Index b) const {
     const auto &f = feature_of(a), &g = feature_of(b);
     if (f.dimension == 1 && g.dimension == 1) return f.feature == g.feature;
@@ -153,7 +154,8 @@ class CollarCheck {
         At{centre(a)}, radius(a), At{centre(b)}, radius(b));
   }
 
-  // Checks the circles of consecutive balls, whose centres are joined by an edge on their crease.
+  // Checks the circles in which consecutive balls meet. The centres of consecutive balls are joined by an
+  // edge on their crease.
   void check_circles() {
     for (const auto& [p, q] : to_check_.mesh.edges) {
       const Index a = ball_at_[p], b = ball_at_[q];

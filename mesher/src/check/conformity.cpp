@@ -153,7 +153,7 @@ void add_edges(const std::array<Index, 3>& face, Index region, int direction,
 
 }  // namespace
 
-// Scans the vertices with all threads, then judges triangles that need a closer look in their order.
+// Scans the vertices with all threads, then judges, in order, the triangles that need a closer look.
 void check_conformity(const MeshToCheck& to_check, CheckReport& report, Findings& findings) {
   const TetMesh& mesh = to_check.mesh;
   struct NotPlain {

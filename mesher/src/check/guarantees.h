@@ -6,8 +6,8 @@
 /// The names of the guarantees, as in Finding::guarantee. They are stable, because scripts look for them.
 ///
 /// To add a guarantee:
-/// 1. Give it a name here, or in the header of its part: layer_cells.h, layer_walls.h, periodic.h. If meshes
-///    with other target sizes may miss it although they follow the shape, list it in `of_shapes`.
+/// 1. Give it a name here, or in the header of its part: layer_cells.h, layer_walls.h, periodic.h. If a mesh
+///    that misses it may still get labels (labelled.h), list it in `of_shapes`.
 /// 2. If it concerns single tets or nodes, write a predicate into predicates.h and call it from tets.cpp or
 ///    second_order.cpp. Otherwise declare a check in mesh_to_check.h and call it from `judge` in check.cpp,
 ///    for meshes of triangles alone from `judge_shells` in shells.cpp, of curve edges alone from
@@ -15,11 +15,13 @@
 /// 3. Under MPI nothing of this runs by itself: call the predicate from `Certification` in
 ///    distributed/src/certify.cpp, for tets in `check_tets`, for nodes in `check_points`. `gather` collects
 ///    the findings of all ranks. A measure of the whole mesh is summed in `sum_up` and judged in
-///    `compare_with_complex`. Names for many ranks only, as "shared_places", stand there.
+///    `compare_with_complex`. Guarantees that only many ranks need, as "shared_places", have their names
+///    there.
 /// 4. Break it on purpose in tests/fast/check_wrong_meshes_test.cpp. If no solver can use a mesh that misses
 ///    it, list it in command/usable.cpp.
-/// 5. Add the name to freecad_workbench/freecad/collarmesh_workbench/guarantees.py and to `guarantees` in
-///    report/html_report/facts.js; without it the reports show the guarantee only when it is missed.
+/// 5. Add the name to `guarantees` in report/html_report/facts.js and to
+///    freecad_workbench/freecad/collarmesh_workbench/guarantees.py; without it the reports show the guarantee
+///    only when it is missed.
 namespace collarmesh::guarantee {
 
 // Guarantees of arrays and labels.
@@ -97,7 +99,7 @@ inline constexpr char curve_present[] = "curve_present";          ///< each curv
 inline constexpr char shell_orientation[] = "shell_orientation";  ///< faces of solids point outwards, those
                                                                   ///< of other surfaces are oriented alike
 
-/// Guarantees of cell shapes and of distances, which meshes with other target sizes may miss.
+/// Guarantees of cell shapes and of distances. A mesh that misses them may still get labels (labelled.h).
 inline constexpr std::array<std::string_view, 14> of_shapes{
     radius_edge,    thin_angles,     collar_dihedral, interior_node, collar_centre,
     collar_gap,     collar_disjoint, collar_cells,    region_volume, volume_kept,

@@ -44,7 +44,7 @@ struct CellSide {
   bool listed() const { return kind == Kind::face || kind == Kind::quad; }
 };
 
-/// `corners`: counterclockwise as seen from outside.
+/// Returns a side of a cell. `corners`: counterclockwise for a viewer outside the cell.
 CellSide side_of(std::array<Index, 3> corners, Index cell, Kind kind) {
   std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
   const bool turned = corners[1] > corners[2];
@@ -344,7 +344,7 @@ class CoreAngles {
  private:
   Index wall_of(Index v) const { return v < walls_.size() && walls_[v] != none ? walls_[v] : v; }
 
-  /// Finds the sides of the core, with the patches of their walls.
+  /// Finds the sides of tets that bound the core, with the patches of the walls below them.
   void find_surface() {
     std::vector<CellSide> sides;
     for (Index t = 0; t < mesh_.tets.size(); ++t)
@@ -460,7 +460,7 @@ std::map<Index, double> volumes_with_layers(const TetMesh& mesh) {
 void check_layer_volumes(const std::map<Index, double>& before, const TetMesh& mesh,
                          const std::map<Index, double>& allowed, CheckReport& report) {
   constexpr std::size_t listed = 20;
-  // A volume is a sum over cells, each with a relative error of some units in the last place of its edges.
+  // A volume is a sum over cells; rounding changes each term by a few units in the last place.
   constexpr double rounding = 1e-9;
   Findings findings(report, listed);
   const auto now = volumes_with_layers(mesh);

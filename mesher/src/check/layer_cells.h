@@ -35,15 +35,15 @@ void check_layer_cells(const TetMesh& mesh, CheckReport& report, std::size_t fin
 /// Returns the volumes of regions, by index, of straight tets, prisms and pyramids.
 std::map<Index, double> volumes_with_layers(const TetMesh& mesh);
 
-/// Checks that regions keep these volumes, within rounding plus the absolute difference allowed for each; 0
-/// for regions that are not listed. Adds findings.
+/// Checks that regions keep these volumes. `allowed`: by region, the absolute difference allowed beyond
+/// rounding; 0 for regions that it does not list. Adds findings.
 void check_layer_volumes(const std::map<Index, double>& before, const TetMesh& mesh,
                          const std::map<Index, double>& allowed, CheckReport& report);
 
-/// Checks the tets beside the layers as in a mesh without layers: circumradius / shortest edge is within its
-/// bound, or the dihedral angles are bounded from below as those of thin tets, and dihedral and face angles
-/// by 150 degrees from above. Writes the mesh's angles and sizes to the report. `walls`: for each point, the
-/// wall's point below it, or none. Adds findings.
+/// Checks the tets beside the layers as in a mesh without layers: the radius-edge ratio is within its bound,
+/// or dihedral angles have the lower bound of thin tets and all angles are at most 150 degrees. Writes the
+/// mesh's angles and sizes to the report. `walls`: for each point, the wall's point below it, or none. Adds
+/// findings.
 void check_core_angles(const TetMesh& mesh, const std::vector<Index>& walls, const Plc& plc,
                        const Bounds& bounds, CheckReport& report);
 

@@ -1,4 +1,4 @@
-// Layers beside their walls: which cells lie on which triangles, by the nodes below them.
+// Checks which cells of layers lie on which triangles of walls, by the walls' nodes below them.
 #include "check/layer_walls.h"
 
 #include <algorithm>

@@ -51,9 +51,9 @@ struct WallGeometry {
 
 /// Checks layers against the walls that were asked for and against the mesh before them: the triangles and
 /// edges of walls are the same, and so are their mid-edge nodes, except those listed as straightened; each
-/// cell of a layer lies above one triangle of a wall; above each triangle there are prisms in all layers, or
-/// the tets of prisms, or pyramids and tets that leave it uncovered, or nothing; area and covered area of
-/// each patch are those that `layers` reports. Adds findings. Cost: O(n log n).
+/// cell of a layer lies above one triangle of a wall; above each triangle there are prisms in all layers (or
+/// their tets), or pyramids and tets, which leave it uncovered, or no cells; area and covered area of each
+/// patch are those that `layers` reports. Adds findings. Cost: O(n log n).
 void check_layer_walls(const AskedWalls& walls, const WallGeometry& before, const TetMesh& mesh,
                        const LayersReport& layers, CheckReport& report,
                        std::span<const SecondOrderReport::Straightened> straightened = {});

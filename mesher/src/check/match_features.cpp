@@ -111,7 +111,8 @@ class Ballot {
   std::vector<Vote> votes_;
 };
 
-// Joins edges of one tag that meet in a point without further edges that is no vertex of the complex.
+// Joins edges of one tag that meet in a point, unless further edges meet there or a vertex of the complex is
+// there.
 DisjointSets edge_pieces(const TetMesh& mesh, const std::vector<Index>& vertex_point) {
   std::vector<std::array<Index, 2>> ends;  // point, edge
   for (Index e = 0; e < mesh.edges.size(); ++e)

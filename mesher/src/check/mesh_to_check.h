@@ -41,9 +41,9 @@ struct MeshToCheck {
   std::vector<double> curve_allowance, patch_allowance;
   std::shared_ptr<const RegionLocator> regions;
   FeatureMatch match;
-  std::vector<std::uint8_t> collar;  ///< by tet, as TetMesh::tet_collar: cells that the complex's creases
-                                     ///< allow as collars
-  bool coarsened = false;            ///< cells of collars keep the bounds of other tets and may be thin, too
+  std::vector<std::uint8_t> collar;  ///< by tet, as TetMesh::tet_collar: its mark, if the tet is at
+                                     ///< a crease of the complex
+  bool coarsened = false;            ///< if true, the bounds of other tets hold in collars, too
   /// The first tet that is part of a prism or pyramid; these cells are judged elsewhere, as a whole.
   Index first_part = none;
 
@@ -65,9 +65,9 @@ struct MeshToCheck {
 
 /// The tets that may exceed the radius-edge bound if their angles are bounded: dihedral angles from below,
 /// and dihedral and face angles by 150 degrees. Only marked tets and collars of a coarsened mesh may, or any
-/// tet if a file has no marks. If features meet at less than twice the lower bound, half the angle between
-/// them is enough. If the input forces an edge of the tet to be short, half the angle that this edge leaves
-/// is enough.
+/// tet if a file has no marks. The lower bound is smaller in two cases. Where features meet at less than
+/// twice the bound, half the angle between them is enough. For a tet with an edge that the input forces to be
+/// short, ForcedEdges::smallest_angle is enough. Both are halved if each tet needs an interior node.
 class ThinCells {
  public:
   static constexpr double largest_angle = largest_angle_of_thin_tets;
@@ -229,7 +229,7 @@ bool vertex_is_outside(const MeshToCheck& to_check, Index vertex);
 bool patch_is_outside(const MeshToCheck& to_check, Index patch);
 
 /// Warns of curves and vertices that are on no patch and lie outside all regions. The builder of the complex
-/// warns of such patches.
+/// warns of patches outside all regions.
 void warn_of_features_outside(const MeshToCheck& to_check, CheckReport& report);
 
 }  // namespace collarmesh::checks

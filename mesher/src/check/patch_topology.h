@@ -21,12 +21,12 @@ struct PatchEdge {
   }
 };
 
-/// The sides of patches at curves: in the complex, and among the edges of the mesh.
+/// The edges of curves: in the complex, with the number of a patch's triangles there, and in the mesh.
 class CurveUses {
  public:
   explicit CurveUses(const MeshToCheck& to_check);
 
-  /// Returns the number of triangles of the patch at each place of the curve in the complex.
+  /// Returns how many triangles of the patch meet at each segment of the curve in the complex.
   std::size_t triangles_at(Index curve, Index patch) const;
   /// Returns the curve of a mesh edge (sorted points), or none.
   Index curve_of(const std::array<Index, 2>& edge) const;

@@ -36,8 +36,8 @@ bool is_translation(const TetMesh::Motion& motion) { return motion.rows == TetMe
 /// - In a cell of three pairs, two sequences of maps lead to a corner. Their results differ by the
 ///   rounding of all evaluations along both, at most six with those of this check.
 /// - A mid-edge node is the middle of two nodes: one sum on either side, u r each.
-/// - Corners that the input gives stay where they are: a translation from the middle of one box to that of
-///   the other rounds three sums, u r each.
+/// - Corners that the input gives are not moved to their images. As a translation from the middle of one box
+///   to that of the other, the motion rounds three sums, u r each.
 double rounding_of(const TetMesh::Motion& motion, double r) {
   const double evaluation = is_translation(motion) ? 1 : 1 + 3 * std::sqrt(3.0);
   constexpr double evaluations = 6, others = 5;

@@ -93,8 +93,8 @@ std::vector<PatchMeeting> meetings_of(const MeshToCheck& to_check, const Plc& pl
   return meetings;
 }
 
-/// Surfaces of patches that meet, by union-find; each patch knows whether it is to be turned against the
-/// first one of its surface.
+/// Surfaces of patches that meet, by union-find. Each patch has a mark that tells whether it must be turned
+/// against the first patch of its surface.
 class MetSurfaces {
  public:
   explicit MetSurfaces(std::size_t patches)

@@ -74,8 +74,8 @@ class ThicknessKept {
   static constexpr double least_facing = 0.9;  // cosine between opposite surfaces; below it they meet at an
                                                // edge or bend away
   // Share of a patch that must face another patch for both to count as sides of a wall. On a smaller share
-  // the patches meet in a wedge, as a thread's run-out meets the plane that cuts it, where thickness runs to
-  // zero.
+  // the patches meet in a wedge, whose thickness runs to zero, as where a thread's run-out meets the plane
+  // that cuts it.
   static constexpr double least_part = 0.01;
   static constexpr Index most_rays = 2000;  // maximum number for each patch and side
 

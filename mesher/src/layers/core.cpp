@@ -1,5 +1,5 @@
-// Pushes the front into the tets: its nodes move by fractions, nodes near it follow, and the engine of
-// improvement restores the tets. Where it cannot, heights are lowered.
+// Pushes the front into the tets in steps: its nodes move by a part of their way, nodes near them follow, and
+// the engine of improvement restores the tets. Where that fails, heights are lowered.
 #include "layers/core.h"
 
 #include <algorithm>
@@ -32,10 +32,10 @@ constexpr std::size_t most_of_few = 20;
 constexpr unsigned most_advances = 6, most_rounds = 4, most_fittings = 40;
 constexpr unsigned most_rings = 64;  // rings around poor tets in which the front is searched for
 constexpr double fitting = 0.85;     // factor by which heights are lowered to fit tets
-// Heights count as reached within this share.
+// A height counts as reached if it is missed by at most this share of the height asked for.
 constexpr double precision = 1e-9;
 constexpr std::size_t at_once = 4096;
-// Radius-edge ratios above and below those of all tets.
+// Radius-edge ratios larger, and smaller, than that of any tet.
 constexpr double any_ratio = 1e12, no_ratio = 0;
 
 }  // namespace
@@ -153,8 +153,9 @@ void Core::fit_tets(Heights& heights, const std::vector<std::uint8_t>& levels) {
   }
 }
 
-/// Returns the smaller ratio of the sines of a tet's extreme angles to those of their bounds: at least 1 if
-/// it keeps both, -1 if it is flat or inverted.
+/// Returns a tet's margin: the sine of its smallest angle divided by that of its bound, or the same for its
+/// largest angle if that is less. It is at least 1 if the tet keeps both bounds, -1 if it is flat or
+/// inverted.
 double Core::margin(const remeshing::Corners& p, Index tet) const {
   const auto [of_smallest, of_largest] =
       thin_->squared_margins(remeshing::extreme_cosines(p), p, piece_->complex[tet].corners);
@@ -331,9 +332,9 @@ std::vector<double> Core::shares_of(const std::vector<Vector>& moves, const std:
   }
 }
 
-/// Improves tets below this angle: first only by tets within their bounds, then poor tets by any better ones.
-/// (Bounds are lower at creases and forced edges, so a better tet elsewhere may miss its bound.)
-/// `thoroughly`: also by slow means.
+/// Improves tets below this angle: first replaces them only by tets within their bounds, then replaces poor
+/// tets by any better ones. (A better tet may still miss its bound, because bounds are lower at creases and
+/// forced edges than beside them.) `thoroughly`: also by slow means.
 void Core::improve_tets(double angle, bool thoroughly) {
   piece_->leave({});
   improve_by(angle, thoroughly, no_ratio);
@@ -357,8 +358,8 @@ void Core::improve_by(double angle, bool thoroughly, double ratio) {
   cancelled_ = cancelled_ || improve(*piece_, options, execution_, thoroughly).cancelled;
 }
 
-/// Returns the tets beyond the bounds on angles, except unchanged ones that were so from the start: the mesh
-/// was certified with them.
+/// Returns the tets beyond the bounds on angles. Leaves out unchanged tets that were beyond them from the
+/// start, because the mesh was certified with these.
 std::vector<Index> Core::poor_tets() const {
   const auto& complex = piece_->complex;
   std::vector<std::uint8_t> poor(complex.size(), 0);

@@ -26,14 +26,15 @@ class Core {
   /// which it failed.
   /// `levels`: by node of the front, how strictly the tets there limit its height at first.
   bool push(Heights& heights, const std::vector<std::uint8_t>& levels);
-  /// From this level on, the limit keeps tets within their bounds without any improvement.
+  /// From this level on, heights are limited so that tets keep their bounds even without improvement.
   static constexpr std::uint8_t strictest = 1;
   const std::vector<Index>& failed() const { return failed_; }
   bool cancelled() const { return cancelled_; }
 
   const remeshing::TetComplex& complex() const { return piece_->complex; }
   const TetMesh& mesh() const { return mesh_; }
-  /// Returns the vertex of the core at a node of the front; the mesh's own where there are no layers.
+  /// Returns the vertex of the core at a node of the front: its copy or, where there are no layers, the node
+  /// itself.
   Index vertex_of(Index node) const { return vertex_of_[node]; }
 
  private:

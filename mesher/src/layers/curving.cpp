@@ -1,5 +1,5 @@
-// Gives meshes with layers second order: first the core, then the cells of layers, whose edges interpolate
-// between those of the wall and those of the core.
+// Gives meshes with layers second order: first the core, then the cells of layers. Their edges bulge like
+// those of the wall below, but less and less towards the core, where they are straight.
 #include "layers/curving.h"
 
 #include <algorithm>
@@ -160,7 +160,7 @@ class LayerCurving {
   }
 
   /// Finds the wall edges of the core between two nodes without layers. The core left them straight below
-  /// triangles of the front; elsewhere it may have placed their nodes differently than before.
+  /// triangles of the front; at other edges it may have placed the nodes differently than before.
   void find_wall_nodes_of_core() {
     for (std::size_t f = 0; f < mesh_.faces.size(); ++f)
       for (unsigned k = 0; k < 3; ++k) {
@@ -200,8 +200,8 @@ class LayerCurving {
           mesh_.features[node] = {2, patches[f]};
   }
 
-  /// Places the nodes of layers: in the middle of the straight edge, plus the bulges of wall and core in
-  /// proportion.
+  /// Places the nodes of layers: in the middle of the straight edge, plus the wall's bulge, which fades
+  /// towards the core.
   void place_nodes() {
     for (const auto& [node, a, b, is_new] : wall_nodes_)
       mesh_.points[node] = 0.5 * (mesh_.points[a] + mesh_.points[b]) + bulge_between(a, b);
@@ -310,10 +310,10 @@ class LayerCurving {
   std::vector<std::array<Index, 6>> core_nodes_;
   std::unordered_map<std::uint64_t, Index> nodes_;  // by edge key
   Shares left_above_, left_on_walls_;               // for edges above walls, and for edges on them
-  std::vector<Edge> ends_;                          // the edges of the layers' nodes
+  std::vector<Edge> ends_;                          // by node of layers: its edge
   struct WallNode {
     Index node, a, b;  // the node, and the ends of its edge
-    bool is_new;       // the core had no feature for it
+    bool is_new;       // the core has the node on no feature
   };
   std::vector<WallNode> wall_nodes_;  // nodes on walls that belong to the core
   std::vector<Index> tets_at_wall_;   // tets of the core with such nodes

@@ -21,7 +21,7 @@ constexpr double direction_precision = 1e-6;
 constexpr double narrow = 0.6;
 // The direction from means of normals is used if its least cosine exceeds this share of the best one's.
 constexpr double steep_enough = 0.85;
-// Planes, and lines, count as the same if the sine of their angle is smaller.
+// Two planes, or two lines, count as the same if the sine of the angle between them is smaller.
 constexpr double parallel = 1e-4;
 // Lines may leave planes by this sine, because the normals of curved patches are means over triangles.
 constexpr double nearly_parallel = 0.02;
@@ -70,7 +70,8 @@ Vector DirectionSearch::nearest_to_origin(const std::vector<Vector>& of) const {
   return nearest;
 }
 
-/// Returns a point of the hull near the one nearest to the origin, on the side of the mean of the normals.
+/// Returns a point of the hull that is not quite the nearest to the origin, but nearer to the mean of the
+/// normals.
 Vector DirectionSearch::nearest_from_mean() const {
   Vector nearest{};
   for (const Vector& n : walls_) nearest = nearest + in_plane(n) / static_cast<double>(walls_.size());

@@ -106,7 +106,8 @@ bool Front::is_bare(Index tet, unsigned corner) const {
   return is_wall(complex_[tet].faces[corner]) && side_of_[4 * std::size_t{tet} + corner] == none;
 }
 
-/// Makes a node of the front for each sector of tets at a wall's node that has a side of the wall.
+/// Makes, for each node of a wall, a node of the front in each sector of tets there that has a side of the
+/// wall.
 void Front::find_nodes() {
   edges_at_ = CellsAtVertices(mesh_.edges, mesh_.points.size());
   node_at.assign(4 * std::size_t{complex_.size()}, none);
@@ -167,7 +168,8 @@ void Front::link_edges() {
     }
 }
 
-/// Goes around an edge of a side, away from the wall, up to another side or a face that ends the tets.
+/// Goes around an edge of a side, through the tets beside it, up to another side of a wall or to the end of
+/// the mesh.
 WallSide::Edge Front::follow(const WallSide& side, unsigned corner) const {
   const Index a = side.corners[corner], b = side.corners[(corner + 1) % 3];
   Index behind = side.corners[(corner + 2) % 3], tet = side.tet;

@@ -31,7 +31,7 @@ std::vector<Index> within_rings(const Lists& neighbours, std::vector<Index> node
 struct WallSide {
   Index face = none;             ///< triangle of the mesh
   Index tet = none;              ///< tet on this side
-  std::array<Index, 3> corners;  ///< counterclockwise as seen from inside
+  std::array<Index, 3> corners;  ///< counterclockwise for a viewer in `tet`
   std::array<Index, 3> nodes;    ///< the front's nodes at these corners
   Index patch = none, region = none;
 
@@ -39,7 +39,8 @@ struct WallSide {
   /// without layers, or none.
   struct Edge {
     Index beyond = none;  ///< the other side; none: there is a face without layers, or nothing
-    /// The face of the mesh that the layers meet at the edge, at their end or between regions; none: no face.
+    /// The face without layers at which the layers end, or which separates layers in two regions; none: no
+    /// such face.
     Index across = none;
     bool outwards = false;  ///< `across` is oriented away from the tets on this side
     bool blocked = false;   ///< no layers are possible
@@ -51,12 +52,12 @@ struct WallSide {
 struct FrontNode {
   Index vertex = none;
   Vector direction{};  ///< unit; into the sector
-  /// The least over all patches of the mean cosine, weighted by angles, between the direction and the normals
-  /// of the patch's sides.
+  /// Each patch has a mean cosine between the direction and the normals of its sides, weighted by angles.
+  /// This is the least of these means.
   double cosine = 0;
   double least_cosine = 0;  ///< the least cosine of all sides
   bool blocked = false;     ///< there can be no layer
-  /// The features without layers along which the node slides.
+  /// The feature without layers along which the node slides.
   TetMesh::VertexFeature slides_on = {};
 };
 

@@ -16,8 +16,8 @@ namespace {
 
 // Height of the first layer if none is given, relative to the edges of the wall.
 constexpr double share_of_edges = 0.1;
-// Cosines between a direction and a wall's normal: below `flattest` there are no layers; below `flat` the
-// node does not move farther to reach the full height.
+// Cosines between a direction and a wall's normal. Below `flattest` there are no layers. A node moves by the
+// height divided by the cosine or, if the cosine is below `flat`, divided by `flat`.
 constexpr double flattest = 0.1, flat = 0.4;
 // Shares of the gap that a stack may take where there is a stack on the other side, and where there is none.
 constexpr double of_shared_gap = 0.3, of_gap = 0.5;

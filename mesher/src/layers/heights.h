@@ -49,7 +49,7 @@ class Heights {
   void fit_gaps();
   /// Lowers distances where nodes would leave curved patches on which they slide.
   void fit_patches(const remeshing::SmoothSurfaces& surfaces, const SurfaceTolerance& tolerance);
-  /// Lowers distances where curved edges of the wall would rise above a part of the layers.
+  /// Leaves layers out where edges of the wall bulge by more than a certain share of the layers' height.
   void fit_bulges(const Bulges& bulges);
   /// Lowers distances where cells would fold, and where neighbours have less than half the height. Returns
   /// whether it lowered any.

@@ -8,7 +8,7 @@ namespace collarmesh::layering {
 
 namespace {
 
-/// Returns the height of the layers up to this one, relative to that of all layers.
+/// Returns the height of the first `layer` layers, relative to that of all layers.
 double share_below(const WallLayers& layers, unsigned layer) {
   WallLayers lower = layers;
   lower.count = layer;

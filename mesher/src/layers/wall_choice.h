@@ -23,7 +23,7 @@ class WallChoice {
   bool has_layers(Index patch, Index region) const {
     return is_wall(patch) && lies_in(wall_of_[patch], region);
   }
-  /// Returns the numbers of layers, by patch and the region on that side of it.
+  /// Returns the numbers of layers, by patch and by the region that contains the layers.
   std::map<std::pair<Index, Index>, unsigned> counts(const Plc& plc) const;
   /// Returns the layers of a patch. Precondition: it is a wall.
   const WallLayers& operator[](Index patch) const {

@@ -13,8 +13,8 @@ namespace collarmesh {
 
 namespace {
 
-/// Returns the derivative of x along a barycentric direction. The weight of a corner is 4 lambda - 1; that of
-/// a mid-edge node, 4 times the lambda of the edge's other end.
+/// Returns the derivatives of x in the barycentric coordinates lambda. In the derivative in lambda_i, corner
+/// i has the weight 4 lambda_i - 1; the mid-edge node of an edge ij has the weight 4 lambda_j.
 template <std::size_t corners, std::size_t nodes>
 std::array<Vector, corners> derivatives(const std::array<Point, nodes>& x,
                                         const std::array<std::array<unsigned, 2>, nodes - corners>& edges,

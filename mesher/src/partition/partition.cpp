@@ -73,8 +73,8 @@ std::size_t cut_of(const DualGraph& graph, const std::vector<GraphIndex>& partit
   return cut / 2;
 }
 
-/// Returns the partition with the fewest cut faces: among several seeds for small meshes, where luck matters
-/// most and time least, and with one seed for others.
+/// Returns the partition with the fewest cut faces. Tries several seeds for small meshes, where luck matters
+/// most and time least; a single seed for others.
 std::vector<GraphIndex> best_by_scotch(ScotchPartition by_scotch, const DualGraph& graph,
                                        unsigned partitions) {
   constexpr std::size_t small = 50'000;

@@ -10,7 +10,7 @@ namespace collarmesh::periodicity {
 using remeshing::TetComplex;
 
 /// A set of tets that will be replaced by tets with a common apex, an existing or a new vertex. Removed faces
-/// of the mesh are replaced, too: by cones of that apex, or by a floor of given faces.
+/// of the mesh are replaced, too: by triangles between the rim and the apex, or by given faces, the floor.
 struct Cavity {
   struct Side {
     std::array<Index, 3> corners;  ///< positive tet {apex, corners} if the apex is inside the cavity
@@ -39,8 +39,8 @@ class CavityEditor {
   const TetMesh& mesh() const { return mesh_; }
   const Point& at(Index vertex) const { return mesh_.points[vertex]; }
 
-  /// Return the tets at a vertex, edge or face, with cones of all the mesh's faces there; empty if bodies
-  /// touch at that place only.
+  /// Return the tets at a vertex, edge or face, with all the mesh's faces there. Empty if bodies touch at
+  /// each of its vertices (TetComplex::pinched).
   Cavity around_vertex(Index vertex) const;
   Cavity around_edge(Index a, Index b) const;
   Cavity around_face(Index face) const;
@@ -54,7 +54,7 @@ class CavityEditor {
   /// Fills the cavity with tets at a new vertex, the apex. Returns the vertex.
   Index insert(const Cavity& cavity, const Point& apex, const TetMesh::VertexFeature& feature);
   void move(Index vertex, const Point& to) { complex_.move_vertex(vertex, to); }
-  /// Returns the faces that the last filling made: those of the floor, then those on the rim.
+  /// Returns the faces that the last filling made: those of the floor, then those at the rim.
   std::span<const Index> created_faces() const { return complex_.created_faces(); }
 
   void divide_curve_edge(Index before, Index vertex, Index after) {

@@ -118,7 +118,7 @@ class ChainEditor {
 
   // Removes a node by collapsing one of its edges, to the neighbour that leaves better tets.
   bool remove(std::size_t i) {
-    if (size() < 4) return false;  // the rest of a closed chain would be a triangle
+    if (size() < 4) return false;  // a closed chain keeps at least three nodes
     const Index node = chain_.nodes[i], before = chain_.nodes[(i + size() - 1) % size()],
                 after = chain_.nodes[(i + 1) % size()];
     if (editor_.on_curve(before, after)) return false;

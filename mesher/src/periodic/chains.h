@@ -22,7 +22,7 @@ struct Chain {
 /// Returns the chains of all curves.
 std::vector<Chain> chains_of(const TetMesh& mesh, const Plc& plc);
 
-/// The effort of changing a chain.
+/// The numbers of nodes that a change of a chain inserted and removed.
 struct ChainChange {
   std::size_t inserted = 0, removed = 0;
   std::vector<Point> stuck;  ///< places of nodes that could not be removed

@@ -19,7 +19,7 @@ void change_across(TetMesh& mesh, const Plc& plc, const PeriodicOptions& options
   images.reserve(pairs.size());
   for (const PatchPair& pair : pairs) images.push_back(find_images(pair, plc, distance));
   Recut recut(mesh, plc, tolerance, pairs, images, moved);
-  // `false`: no edge counts as forced to be short, because all edges between copies would.
+  // `false`: no edge counts as forced to be short; otherwise all edges between copies would count.
   remeshing::EditableMesh edited(recut.mesh(), recut.complex().plc, recut.complex().tolerance, edges_per_hole,
                                  false);
   edited.fix(recut.fixed());

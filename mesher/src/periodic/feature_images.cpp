@@ -120,8 +120,8 @@ class Matcher {
     return points;
   }
 
-  /// Returns the largest distance between two polylines, in both directions; if their boxes already differ,
-  /// only the distance of the boxes.
+  /// Returns the largest distance between two polylines, in both directions. If already their boxes are too
+  /// far from each other, returns only the distance of the boxes.
   Deviation deviation(const std::vector<Point>& a, const std::vector<Point>& b) const {
     Box box_of_a, box_of_b;
     for (const Point& p : a) box_of_a.add(p);

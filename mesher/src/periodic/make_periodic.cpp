@@ -239,7 +239,7 @@ class Maker {
     }
   }
 
-  // Translates edges to corresponding nodes; leaves out edges with a node that has none.
+  // Translates edges to corresponding nodes; leaves out an edge if one of its nodes has no counterpart.
   static std::vector<PatchEditor::Edge> named(const std::vector<PatchEditor::Edge>& edges,
                                               const std::map<Index, Index>& node_of) {
     std::vector<PatchEditor::Edge> named;

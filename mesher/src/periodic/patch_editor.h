@@ -12,7 +12,7 @@
 
 namespace collarmesh::periodicity {
 
-/// The effort of changing a patch.
+/// The numbers of nodes that changes of a patch inserted and removed, and of edges that they flipped.
 struct PatchChange {
   std::size_t inserted = 0, removed = 0, turned = 0;
 };

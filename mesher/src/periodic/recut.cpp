@@ -205,7 +205,7 @@ void Recut::add_vertices() {
   points_ = made_.points;
 }
 
-// Adds faces at the places of their tets. On a seam, the faces of both groups become one, on the patch of the
+// Adds the faces, moved with their tets. On a seam, the faces of both groups become one, on the patch of the
 // group that stays.
 void Recut::add_faces() {
   ByTriangle<Index> face_at;
@@ -242,7 +242,7 @@ void Recut::add_faces() {
     }
 }
 
-// Adds edges at the places of their tets.
+// Adds the edges, moved with their tets.
 void Recut::add_edges() {
   std::unordered_map<std::uint64_t, Index> edge_at, made_at;
   for (Index e = 0; e < mesh_.edges.size(); ++e)
@@ -268,8 +268,8 @@ void Recut::add_edges() {
     }
 }
 
-// Fixes the vertices of sides without a neighbour at the new cuts. Faces there belong to no patch, so they
-// stay.
+// Fixes the vertices at the new cuts, where sides of tets have no neighbour. Faces there belong to no patch,
+// so they stay.
 void Recut::fix_cuts() {
   ByTriangle<unsigned> uses, uses_before;
   for (std::size_t t = 0; t < made_.tets.size(); ++t)
@@ -343,8 +343,8 @@ void Recut::note_vertices(const remeshing::TetComplex& complex) {
   points_.resize(kept);
 }
 
-// Returns the original of a feature of the tiled complex, as tets of the copy with this shift need it. A
-// feature on a seam has two originals, one in each group of the pair; the shift determines which one.
+// Returns the original of a feature of the tiled complex, for the tets of the copy with this shift. A feature
+// on a seam has two originals, one in each group of the pair; the shift determines which one.
 Index Recut::feature_back(unsigned dimension, Index feature, Shift shift) const {
   if (feature == none) return none;
   const Shift own = copies_[feature / count(dimension)];

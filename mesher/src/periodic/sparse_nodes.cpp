@@ -60,7 +60,7 @@ class PatchNodes {
     return found->second;
   }
 
-  // The lengths on the border are those of its edges.
+  // Records an edge. On the border, lengths are at most those of the edges there.
   void add_edge(Index a, Index b) {
     const Index i = number(a), j = number(b);
     neighbours_[i].push_back(j);

@@ -92,8 +92,8 @@ class BoundaryProjection {
     return bounds;
   }
 
-  // Returns the allowed distance of a vertex from a feature of the complex. If the tolerance is small, the
-  // complex may be farther from the exact geometry than the mesh may be from the complex.
+  // Returns the allowed distance of a vertex on the exact geometry from its feature in the complex. If the
+  // tolerance is small, the exact geometry may be farther away from the complex.
   double farthest_from(unsigned dimension, Index feature, const Point& p) const {
     if (dimension == 1) return most_off * tolerance_.least_on_curve(plc_.curves[feature]);
     if (!tolerance_.varies()) return most_off * tolerance_.largest();
@@ -174,7 +174,7 @@ class BoundaryProjection {
   }
 
   // Moves back corners of faces that are too far from a smooth patch, the corner that moved farthest first.
-  // Such faces occur because the exact geometry may be nearly as far from the complex as the mesh may be.
+  // Such faces occur because the exact geometry may itself be nearly as far from the patch as is allowed.
   // Returns the tets around these corners.
   std::vector<Index> keep_distances() {
     std::vector<Index> around;
@@ -196,7 +196,7 @@ class BoundaryProjection {
     return around;
   }
 
-  /// Moves back the vertex that moved farthest. Returns false if none of them had moved.
+  /// Moves back the vertex that moved farthest. Returns false if none of the vertices had moved.
   template <std::size_t n>
   bool move_farthest_back(const std::array<Index, n>& vertices, std::vector<Index>& around) {
     const auto moved = [&](Index p) { return distance(mesh_.points[p], room_.origin(p)); };
@@ -236,8 +236,8 @@ class BoundaryProjection {
     around.insert(around.end(), tets.begin(), tets.end());
   }
 
-  // In each spoilt tet, moves back the vertex that moved farthest to its exact feature or, if there is none,
-  // all corners. Returns the tets that are still spoilt.
+  // Moves back one vertex of each spoilt tet: among those on their exact features the one with the longest
+  // move. If there is none, moves back all corners. Returns the tets that are still spoilt.
   std::vector<Index> give_way(const std::vector<Index>& spoilt) {
     std::vector<Index> around;
     for (const Index t : spoilt) {

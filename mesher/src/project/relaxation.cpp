@@ -306,7 +306,9 @@ double Relaxation::sag_around(Index vertex) const {
   for (const Index f : faces_at_[vertex]) {
     const auto& [a, b, c] = mesh_.faces[f];
     see(2, mesh_.face_patch[f], (points[a] + points[b] + points[c]) / 3);
-    const Index next = vertex == a ? b : vertex == b ? c : a;  // another face has the other side
+    const Index next = vertex == a   ? b
+                       : vertex == b ? c
+                                     : a;  // the face beside this one tests the other side
     see(2, mesh_.face_patch[f], 0.5 * (points[vertex] + points[next]));
   }
   for (const Index e : edges_at_[vertex]) {

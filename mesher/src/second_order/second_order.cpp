@@ -315,7 +315,7 @@ class TetCurving {
   static void step_back(Move& move) { move.share = move.share > least_share ? step_factor * move.share : 0; }
 
   // Returns the move to take back: the shortest one whose next step back makes the tet valid, otherwise the
-  // longest one; none if all its edges are straight.
+  // longest one; none if all edges of the tet are straight.
   Index move_at_fault(Index tet) const {
     const CurvedTet nodes = curved_tet(mesh_, tet);
     const std::array<Index, 6> moves = moves_of(tet);

@@ -9,7 +9,7 @@ namespace collarmesh::shells {
 
 namespace {
 
-/// Counts target edge lengths along a curve up to each place.
+/// A counter of target edge lengths along a curve.
 class EdgesAlong {
  public:
   EdgesAlong(const std::function<double(double)>& size_at, double from, double to) {

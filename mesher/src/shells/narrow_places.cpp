@@ -31,7 +31,8 @@ void NarrowPlaces::measure() {
 /// Sets a lower bound on the length of divided edges, so that there are not too many edges.
 void NarrowPlaces::bound_widths() {
   constexpr unsigned most_steps = 60;
-  // The bound: `first` target edge lengths, times `step` until edges are few enough.
+  // The bound starts at `first` target edge lengths and grows by the factor `step` until edges are few
+  // enough.
   constexpr double step = 1.3, first = 1e-6;
   const auto least = [&](Index e, double share) {
     const auto& [from, to] = complex_.edges[e].at;

@@ -45,8 +45,8 @@ class PatchSurfaces {
   /// Returns the fit of a triangle. Distances below the share `enough` of the tolerance need not be exact:
   /// the result may be too large, up to that share.
   Fit fit(const Corners& t, Index patch, double enough = 0) const;
-  /// Returns the larger of the distances of two points inside a segment from the patch, divided by the
-  /// tolerance there. `enough`: as for `fit`.
+  /// Measures the distances of two points inside a segment from the patch. Returns the larger one, divided by
+  /// the tolerance there. `enough`: as for `fit`.
   double excess_between(Index patch, const Point& a, const Point& b, double enough) const;
   /// Returns points of a smooth patch that are farther than this share of the tolerance from the triangles on
   /// it, each with the nearest triangle; at most one point per triangle.

@@ -31,7 +31,8 @@ class ShapeRepair {
   /// Collapses edges if the shapes stay good.
   void coarsen();
 
-  /// Sets the least height, relative to the target edge length, of triangles between curves that are refined.
+  /// Sets the least height, relative to the target edge length, that a triangle between curves must have to
+  /// be refined.
   void set_narrowest(double share) { narrowest_ = share; }
 
   /// Returns the bound on a triangle's shape. It is smaller at a sharp corner of the input.

@@ -9,9 +9,9 @@
 
 namespace collarmesh::shells {
 
-/// Corners of patches between two curves that are sharper than the angles of good triangles. All curves that
-/// begin there at a sharp angle get a first edge of the same length, the tip. A triangle between two tips
-/// closes the corner, and no sharp corner remains behind it.
+/// Corners of patches, between two curves, that are sharper than the angles of good triangles. All curves
+/// that begin there at a sharp angle get a first edge of the same length, the tip. A triangle between two
+/// tips closes the corner, and no sharp corner remains behind it.
 class SharpCorners {
  public:
   /// Finds the corners. `complex` has triangles on the patches of `plc`. Cost: linear.

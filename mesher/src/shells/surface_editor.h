@@ -68,7 +68,7 @@ class SurfaceEditor {
       double least_shape;
     };
     std::vector<Neighbour> neighbours;
-    std::vector<std::pair<Index, Index>> changes;  ///< changes of the neighbours and of their neighbours
+    std::vector<std::pair<Index, Index>> changes;  ///< numbers of changes of vertices up to two edges away
     /// Edges at the neighbours, except those at the vertex, with the arc lengths of their ends (`Edge::at`).
     std::vector<std::pair<Index, std::array<double, 2>>> places;
   };

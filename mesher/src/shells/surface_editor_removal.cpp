@@ -114,8 +114,8 @@ bool SurfaceEditor::chord_permits(Index vertex, std::span<const Hole> holes, con
   if (a == b || complex_.edge_at(a, b) != none || length(a, b) > rule.longest * asked_of_edge(a, b) ||
       sag_across(*around) > most_excess_)
     return false;
-  // If a hole is a single triangle, its third side becomes the chord. This side may have only the triangles
-  // of such holes, and one triangle beyond each of them.
+  // If a hole is a single triangle, its third side becomes the chord. At this side there may be only such
+  // triangles and, beyond each of them, one other triangle.
   std::size_t flat = 0;
   for (const Hole& hole : holes) {
     const bool between = std::minmax(hole.border.front(), hole.border.back()) == std::minmax(a, b);

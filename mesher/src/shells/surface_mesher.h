@@ -22,7 +22,7 @@ class SharpCorners;
 /// coarsen places that became too fine.
 class SurfaceMesher {
  public:
-  /// Keeps all but the tolerance by reference. The mesh takes the share `most_excess` of the tolerance.
+  /// Keeps all but the tolerance by reference. The mesh may use the share `most_excess` of the tolerance.
   SurfaceMesher(const Plc& plc, const MeshOptions& options, SurfaceTolerance tolerance, double most_excess,
                 const Execution& execution);
 

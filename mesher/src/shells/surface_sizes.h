@@ -9,8 +9,8 @@
 
 namespace collarmesh::shells {
 
-/// Target edge lengths on curves and patches. Away from places with small lengths, and from curves shorter
-/// than the lengths, they grow by at most the gradation per unit of distance.
+/// Target edge lengths on curves and patches. They grow by at most the gradation per unit of distance, away
+/// from places with small lengths and from curves that are shorter than the lengths.
 class SurfaceSizes {
  public:
   /// Keeps references to all arguments.

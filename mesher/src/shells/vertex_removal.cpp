@@ -39,8 +39,8 @@ std::vector<Index> VertexRemoval::candidates() {
   return vertices;
 }
 
-/// Returns the least shape allowed around a vertex: on curved patches there is a margin, because vertices
-/// will move onto the exact geometry.
+/// Returns the least shape allowed around a vertex: the bound and a margin, which is larger on curved
+/// patches, because vertices will move onto the exact geometry.
 double VertexRemoval::least_shape_beside(Index vertex) const {
   constexpr double planar_margin = 0.3, curved_margin = 1;
   for (const Index t : complex_.vertices[vertex].triangles)

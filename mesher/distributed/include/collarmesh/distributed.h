@@ -110,7 +110,7 @@ class ParallelMesh {
   /// of order 2.
   OrderReport raise_order(const Shape& shape);
 
-  /// Recomputes every guarantee. Angles may exceed those of the coarse mesh by `slack` degrees.
+  /// Recomputes every guarantee. Angles may be worse than those of the coarse mesh by `slack` degrees.
   Certificate certify(const Shape& shape, double slack = 10) const;
 
   /// Multiplies all coordinates by a factor.

@@ -53,7 +53,7 @@ struct SurfacesPlc {
   std::vector<std::string> notes;
 };
 
-/// Collects OpenMesh meshes, also of different types, into one complex.
+/// A collector of OpenMesh meshes, also of different types, for one complex.
 class Surfaces {
  public:
   /// Adds a TriMesh or PolyMesh of any traits. Does not change the mesh, and keeps no reference to it. Throws
