@@ -82,5 +82,25 @@ TEST(RunControl, AnAttemptThatFailsGivesItsTimeBack) {
   EXPECT_NO_THROW(control.stop_if_asked());
 }
 
+TEST(RunControl, AttemptsMayContainAttempts) {
+  PipelineResult made;
+  PipelineOptions options;
+  options.mesh.time_limit = 1000;
+  const Execution execution;
+  RunControl control(options, execution, made);
+  const auto wait = [&] {
+    while (!control.execution().cancelled()) std::this_thread::yield();
+    EXPECT_TRUE(control.out_of_time());
+  };
+  control.attempt(0.5, [&] {
+    control.attempt(1e-9, wait);
+    EXPECT_FALSE(control.execution().cancelled()) << "the outer attempt has time left";
+    EXPECT_FALSE(control.out_of_time());
+  });
+  control.attempt(1e-9, [&] { control.attempt(0.5, wait); });
+  EXPECT_FALSE(control.execution().cancelled());
+  EXPECT_FALSE(control.out_of_time());
+}
+
 }  // namespace
 }  // namespace collarmesh::deadline_test

@@ -380,5 +380,16 @@ TEST(ConstrainedStart, GivesThinWallsVerticesThatFaceEachOther) {
   }
 }
 
+// At first nothing but the four corners of the two sides face each other.
+TEST(Constrained, DividesAThinPlate) {
+  PipelineOptions options;
+  options.mesh = with_size(1);
+  options.start = Start::constrained;
+  const PolygonSoup plate = box({0, 0, 0}, {10, 10, 0.1});
+  const SoupPipelineResult made = run_pipeline({&plate, 1}, options);
+  EXPECT_EQ(made.missed(), "");
+  EXPECT_LT(median_edge(made.result.mesh), 1.5);
+}
+
 }  // namespace
 }  // namespace collarmesh::constrained_test

@@ -341,6 +341,14 @@ TEST(Remesh, MakesTriangulationsOfASurfaceGood) {
   }
 }
 
+// Short edges across the plate lower the bounds on angles. Tets within these bounds are not poor.
+TEST(Remesh, KeepsTheLengthsOfAThinPlate) {
+  const TetMesh plate = meshed({box({0, 0, 0}, {10, 10, 0.1})}, 1);
+  const RemeshResult made = remesh(plate, of_size(1));
+  const double before = static_cast<double>(plate.tets.size());
+  EXPECT_NEAR(static_cast<double>(made.result.mesh.tets.size()), before, 0.3 * before);
+}
+
 TEST(Remesh, FindsFeaturesOfAMeshWithoutTags) {
   TetMesh mesh = meshed({l_shape()}, 0.3);
   const double volume = volumes(mesh).begin()->second;

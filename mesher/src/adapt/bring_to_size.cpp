@@ -1,6 +1,7 @@
 #include "adapt/bring_to_size.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cstddef>
 #include <utility>
@@ -28,10 +29,12 @@ constexpr unsigned most_halvings = 12;
 constexpr double around = 0.3;
 // Edges longer than this factor times the target are divided.
 constexpr double longest = coarsening::CoarseningRule::longest_new;
-// Each seed makes `longest` smaller than the seed before by this share; after `seeds` seeds the values
+// If more than the share `most_of_long` of the tets has an edge longer than `far_too_long` times the target when
+// no edge can be divided any more, edges that long are divided whatever the shapes of the new tets.
+constexpr double far_too_long = 2.5, most_of_long = 0.01;
+// Each seed makes `longest` smaller than the seed before by this share; after `different_seeds` seeds the values
 // repeat.
 constexpr double less_by_seed = 0.03;
-constexpr unsigned seeds = 4;
 
 // An edge beside a short edge may be `of_shortest` times as long; from there edges may grow by `growth` per
 // unit of distance.
@@ -46,7 +49,7 @@ class Bringing {
   Bringing(TetMesh& mesh, const Plc& plc, MeshOptions options, const Execution& execution)
       : mesh_(mesh), plc_(plc), options_(std::move(options)), execution_(execution) {
     options_.edges_per_hole = 0;  // asks for no further edges around holes
-    longest_ = longest * (1 - less_by_seed * static_cast<double>(options_.seed % seeds));
+    longest_ = longest * (1 - less_by_seed * static_cast<double>(options_.seed % different_seeds));
   }
 
   bool run() {
@@ -131,15 +134,32 @@ class Bringing {
   /// Divides edges along thin parts at places that face vertices, and collapses edges around and across these
   /// parts that are no longer needed. Nothing moves in between, so that vertices go on facing each other.
   void divide_thin() {
+    bool any_shape = false;
     for (unsigned pass = 0; pass < most_halvings && may_go_on(); ++pass) {
       const std::size_t divided = edit([&](EditableMesh& edited) {
         EdgeDivision division(edited, options_, sizes());
         division.divide_facing();
-        return division.divide_all(longest_, options_.max_vertices, execution_);
+        if (any_shape) division.accept_any_shape();
+        return division.divide_all(any_shape ? far_too_long : longest_, options_.max_vertices, execution_);
       });
-      if (divided == 0) break;
-      relax([](Relaxation& relaxation) { relaxation.collapse_short(around); });
+      if (divided > 0) relax([](Relaxation& relaxation) { relaxation.collapse_short(around); });
+      // Across a wall whose corners alone face each other, no edge can be divided first without a poor tet.
+      if (divided == 0 && (any_shape || !are_far_too_long())) break;
+      any_shape = divided == 0;
     }
+  }
+
+  /// Returns whether many tets have edges far longer than their targets.
+  bool are_far_too_long() const {
+    const Metric metric(sizes());
+    const auto& p = mesh_.points;
+    const auto is_long = [&](const std::array<Index, 4>& tet) {
+      return std::ranges::any_of(cell_shapes::corner_pairs, [&](const auto& edge) {
+        return metric.length(tet, p[tet[edge[1]]] - p[tet[edge[0]]]) > far_too_long;
+      });
+    };
+    return most_of_long * static_cast<double>(mesh_.tets.size()) <
+           static_cast<double>(std::ranges::count_if(mesh_.tets, is_long));
   }
 
   /// Estimates the number of tets for these sizes, given by vertex.

@@ -7,6 +7,9 @@
 
 namespace collarmesh::remeshing::adapting {
 
+/// `bring_to_size` makes other meshes with this number of consecutive seeds; then they repeat.
+inline constexpr unsigned different_seeds = 4;
+
 /// Brings a mesh of a complex, with tets of any shapes, approximately to the target sizes: collapses short
 /// edges, divides long edges, and improves tets. Coarsening and improvement must follow.
 /// `options.bounds.tolerance` must be set. Returns false if it was stopped, or if the mesh reached

@@ -18,10 +18,7 @@ namespace collarmesh::remeshing::adapting {
 
 namespace {
 
-// New tets must have at least this share of the quality of the worst tet at the edge. Halves of a tet have
-// about half of its smallest angle; later improvement finds better tets.
-constexpr double least_quality_share = 0.4;
-// If all tets at an edge are better than this, `least_quality_share` is relative to this quality.
+// If all tets at an edge are better than this, `least_share_` is relative to this quality.
 constexpr double good_enough = 1;
 constexpr std::size_t edges_between_reports = 4096;
 // Crossing edges are divided only if they cross in their middle part. An edge on a curve can only be divided
@@ -177,7 +174,7 @@ bool EdgeDivision::divide(Index a, Index b) {
   for (const Index t : ring.tets) worst = std::min(worst, quality(t));
   Change change;
   operations_.divide_edge(a, b, facing_ ? share_facing(a, b, ring) : 0.5,
-                          std::max(0.0, least_quality_share * worst), change);
+                          std::max(0.0, least_share_ * worst), change);
   if (change.is_none() || !edited_.stays_oriented(change)) return false;
   add_vertex(a, b, complex()[at].region, change);
   edited_.apply(std::move(change));

@@ -29,6 +29,8 @@ class EdgeDivision {
   /// Makes later calls divide an edge with a vertex near it at the place that faces the vertex, not in the
   /// middle.
   void divide_facing() { facing_ = true; }
+  /// Makes later calls divide edges whatever the shapes of the new tets, as long as their volumes are positive.
+  void accept_any_shape() { least_share_ = 0; }
   /// Divides edges of tets that miss their bounds: two opposite edges of a flat tet, as between the two sides
   /// of a thin wall, at the places where they cross, which face each other; or one edge at a place that faces
   /// a corner. Keeps a division if fewer tets miss their bounds then, or as many as before but the worst are
@@ -78,6 +80,9 @@ class EdgeDivision {
   Sizing sizing_;
   Metric metric_;
   bool facing_ = false;
+  // New tets must have at least this share of the quality of the worst tet at the edge. Halves of a tet have
+  // about half of its smallest angle; later improvement finds better tets.
+  double least_share_ = 0.4;
   ThinRule rule_;
   Operations operations_;
   std::vector<double> before_;  // qualities of the tets that the current trial replaced

@@ -54,9 +54,10 @@ constexpr double no_ratio = 0.1;
 // `angle_reserve` is the share of the bounds on angles that is kept in reserve for these moves.
 constexpr double distance_left = 0.75, angle_reserve = 0.05;
 constexpr unsigned most_rounds_of_poor = 4;
-// If more than this share of the tets misses the bounds on angles, the whole mesh is brought to its size
-// first.
-constexpr double mostly = 0.1;
+// The whole mesh is brought to its size first if more than the share `mostly` of its tets is beyond the bounds
+// on angles, and more than `least_beyond` is so although short edges of the surface lower the bounds beside
+// them.
+constexpr double mostly = 0.1, least_beyond = 0.02;
 // If the smallest angle of a mesh, away from creases and narrow places, is at least this (degrees), the mesh
 // keeps it.
 constexpr double good_angle = 15;
@@ -232,8 +233,9 @@ class Remeshing {
   /// Returns whether so many tets miss the bounds on angles that improving them one by one is futile, as in a
   /// triangulation of nothing but the surface's vertices.
   bool is_mostly_poor() {
-    return static_cast<double>(count_beyond(options_.mesh.bounds.thin_angle, nullptr)) >
-           mostly * static_cast<double>(mesh().tets.size());
+    const double thin_angle = options_.mesh.bounds.thin_angle, tets = static_cast<double>(mesh().tets.size());
+    return static_cast<double>(count_beyond(thin_angle, nullptr)) > mostly * tets &&
+           static_cast<double>(count_beyond(thin_angle, forced_edges())) > least_beyond * tets;
   }
 
   void bring_to_size() {
@@ -241,7 +243,7 @@ class Remeshing {
     control_.watch([&](const Execution& execution) {
       adapting::bring_to_size(mesh(), made_.plc, options_kept(), execution);
     });
-    require_budget();
+    if (is_full()) coarsen_and_improve();
   }
 
   /// Divides edges so that vertices face each other, and coarsens again, as long as that reduces the number
@@ -250,13 +252,20 @@ class Remeshing {
     std::size_t fewest = count_beyond(options_.mesh.bounds.thin_angle, forced_edges());
     for (unsigned round = 0; round < most_rounds_of_poor && fewest > 0; ++round) {
       TetMesh before = mesh();
+      const auto coarsening = made_.coarsening;
+      const auto improvement = made_.improvement;
+      const RemeshReport report = made_.remeshing;
       control_.watch(
           [&](const Execution& execution) { adapting::relax(mesh(), made_.plc, options_kept(), execution); });
-      require_budget();
-      coarsen_and_improve();
+      if (!is_full()) coarsen_and_improve();
       const std::size_t now = count_beyond(options_.mesh.bounds.thin_angle, forced_edges());
-      if (now >= fewest) mesh() = std::move(before);
-      if (now >= fewest) return;
+      if (is_full() || now >= fewest) {
+        mesh() = std::move(before);
+        made_.coarsening = coarsening;
+        made_.improvement = improvement;
+        made_.remeshing = report;
+        return;
+      }
       fewest = now;
     }
   }

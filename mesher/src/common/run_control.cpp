@@ -88,7 +88,8 @@ void RunControl::stop() {
 }
 
 bool RunControl::out_of_time() const {
-  return (watch_ && watch_->passed()) || (of_attempt_ && of_attempt_->passed());
+  return (watch_ && watch_->passed()) ||
+         std::ranges::any_of(attempts_, [](const auto& watch) { return watch->passed(); });
 }
 
 void RunControl::attempt(double share_of_time, const std::function<void()>& work) {
@@ -96,11 +97,11 @@ void RunControl::attempt(double share_of_time, const std::function<void()>& work
   const double remaining = deadline_.remaining();
   if (remaining <= 0) return;
   const Execution outside = inner_;
-  of_attempt_ = std::make_unique<Watch>(Deadline::in(share_of_time * remaining), outside);
-  inner_.cancel = &of_attempt_->flag();
+  attempts_.push_back(std::make_unique<Watch>(Deadline::in(share_of_time * remaining), outside));
+  inner_.cancel = &attempts_.back()->flag();
   const auto restore = [&] {
     inner_.cancel = outside.cancel;
-    of_attempt_.reset();
+    attempts_.pop_back();
   };
   try {
     work();

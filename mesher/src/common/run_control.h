@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 #include <string_view>
+#include <vector>
 
 #include "collarmesh/pipeline.h"
 #include "collarmesh/progress.h"
@@ -54,7 +55,8 @@ class RunControl {
   const Deadline deadline_;
   const Execution& outer_;
   Execution inner_;
-  std::unique_ptr<Watch> watch_, of_attempt_;
+  std::unique_ptr<Watch> watch_;
+  std::vector<std::unique_ptr<Watch>> attempts_;  // one inside the other
   std::string_view stage_;
   double from_ = 0, to_ = 0, fraction_ = 0;  // fractions of the whole run: begin and end of the stage, and
                                              // the last one reported

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <new>
 #include <utility>
 
+#include "adapt/bring_to_size.h"
 #include "collarmesh/error.h"
 #include "common/disjoint_sets.h"
 #include "common/thread_limit.h"
@@ -302,31 +304,36 @@ std::optional<PipelineResult> MeshMaker::from_constrained(const Plc& plc, const 
 
 void MeshMaker::try_seeds_of_constrained(const Plc& plc) {
   constexpr std::size_t few = 20;
+  constexpr unsigned most = remeshing::adapting::different_seeds;
   constexpr double share_of_time = 0.5;
   PipelineResult& made = job_.made;
-  const auto misses_few_shapes = [&] {
-    const CheckReport& check = made.check;
-    return check.findings_total > 0 && check.findings_total <= few &&
-           std::ranges::all_of(check.findings, is_about_shape);
+  const auto misses_shapes_only = [](const CheckReport& check) {
+    return std::ranges::all_of(check.findings, is_about_shape);
   };
-  const std::uint64_t first = job_.given.mesh.seed;
-  for (std::uint64_t seed = first + 1; seed < first + job_.given.seeds && misses_few_shapes(); ++seed) {
+  const std::uint64_t first = job_.given.mesh.seed, end = first + std::min(job_.given.seeds, most);
+  std::uint64_t seed_of_kept = first;
+  for (std::uint64_t seed = first + 1; seed < end && !made.guarantees_hold(); ++seed) {
+    if (made.check.findings_total > few || !misses_shapes_only(made.check)) return;
     PipelineResult kept = std::exchange(made, {});
     bool better = false;
-    job_.control.attempt(share_of_time, [&] {
-      try {
+    try {
+      job_.control.attempt(share_of_time, [&] {
         make(plc, seed);
-        better = made.check.findings_total < kept.check.findings_total;
-      } catch (const Hopeless&) {
-      } catch (const Ended&) {
-        if (made.result.status == MeshStatus::cancelled) throw;
-      }
-    });
-    if (better)
+        better = misses_shapes_only(made.check) && made.check.findings_total < kept.check.findings_total;
+      });
+    } catch (const Hopeless&) {
+    } catch (const PlcError&) {
+    } catch (const std::bad_alloc&) {
+    } catch (const Ended&) {
+      if (made.result.status == MeshStatus::cancelled) throw;
+    }
+    if (better) {
       made.check.notes.push_back(
-          fmt::format("made with seed {}, because with seed {}: {}", seed, first, kept.missed()));
-    else
+          fmt::format("made with seed {}, because with seed {}: {}", seed, seed_of_kept, kept.missed()));
+      seed_of_kept = seed;
+    } else {
       made = std::move(kept);
+    }
   }
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <iterator>
 #include <new>
 #include <optional>
@@ -114,12 +115,14 @@ void Tries::mesh_any_repaired(SoupPipelineResult& all) {
   const End end = tried.first;
   const std::string& why = tried.second;
   if (!sharp.empty() && end != End::exploded && end != End::refused) made.check.notes.push_back(sharp);
-  if (end == End::holds || (end == End::missed && come_nearer_where_missed(all.plc))) return;
+  if (end == End::holds) return;
+  const std::vector<RepairOptions> repairs = repairs_after(end, all);
   bool has_mesh = end == End::missed, built_last = true;
   std::optional<Point> place;
   // If places far thinner than the sizes spoil the mesh, a change at any of them may help.
   if (!made.check.findings.empty() && !maker_.was_far_too_fine()) place = made.check.findings.front().where;
-  for (const RepairOptions& repair : repairs_after(end, all)) {
+  if (end == End::missed && come_nearer_where_missed(all.plc)) return;
+  for (const RepairOptions& repair : repairs) {
     SoupPipelineResult other;
     const bool better = find_better(has_mesh, [&] {
       build(repair, other);
@@ -412,26 +415,6 @@ double Tries::largest_loss(const Plc& plc, std::vector<double>* shares) const {
   return largest;
 }
 
-/// If nothing but volumes and thicknesses misses its limit, makes the mesh again, nearer to the smooth
-/// patches of the regions and walls that miss it. Returns whether every guarantee holds then.
-bool Tries::come_nearer_where_missed(const Plc& plc) {
-  constexpr double least = 0.25;
-  PipelineResult& made = job_.made;
-  const Bounds& bounds = job_.given.mesh.bounds;
-  if (bounds.distance > 0 || bounds.tolerance || !misses_volumes_only(made.check)) return false;
-  std::vector<double> shares(plc.patches.size(), 1);
-  largest_loss(plc, &shares);
-  for (const Finding& finding : made.check.findings)
-    if (finding.guarantee == guarantee::thickness_kept)
-      for (const Index patch : finding.ids) shares[patch] = std::min(shares[patch], least);
-  if (std::ranges::all_of(shares, [](double share) { return share >= 1; })) return false;
-  const std::string missed = made.missed();
-  maker_.come_nearer(plc, shares);
-  if (!find_better(true, [&] { maker_.make(plc, seed_); })) return false;
-  made.check.notes.push_back(fmt::format("made nearer to smooth surfaces, because otherwise: {}", missed));
-  return true;
-}
-
 /// Returns whether the kept mesh is small, keeps every guarantee, and was refined with the default distances
 /// of first order, without hitting the bound on vertices.
 bool Tries::may_keep_volumes() const {
@@ -463,10 +446,45 @@ void Tries::keep_volumes(const Plc& plc) {
 /// Makes the mesh again with these shares of the tolerance. Keeps it if no volume calls for a warning, or if
 /// the loss of the mesh at hand is halved with at most twice the tets. Returns whether it is kept.
 bool Tries::come_nearer(const Plc& plc, const std::vector<double>& shares, double loss) {
-  constexpr std::size_t times_vertices = 3, times_tets = 2;
+  constexpr std::size_t times_tets = 2;
+  const std::size_t tets = job_.made.result.mesh.tets.size();
+  return make_nearer(plc, shares, fmt::format("a region's volume was off by {:.2g}%", 100 * loss), [&] {
+    const double now = largest_loss(plc, nullptr);
+    const bool is_halved = 2 * now <= loss && job_.made.result.mesh.tets.size() <= times_tets * tets;
+    return now <= volume_warned_of || is_halved;
+  });
+}
+
+/// If nothing but volumes and thicknesses misses its limit, makes the mesh again, nearer to the smooth patches
+/// concerned, in at most half of the remaining time. Returns whether every guarantee holds then.
+bool Tries::come_nearer_where_missed(const Plc& plc) {
+  constexpr double least = 0.25, share_of_time = 0.5;
+  const CheckReport& check = job_.made.check;
+  const Bounds& bounds = job_.given.mesh.bounds;
+  if (job_.given.order != 1 || bounds.distance > 0 || bounds.tolerance || !misses_volumes_only(check))
+    return false;
+  std::vector<double> shares(plc.patches.size(), 1);
+  largest_loss(plc, &shares);
+  for (const Finding& finding : check.findings)
+    if (finding.guarantee == guarantee::thickness_kept)
+      for (const Index patch : finding.ids) shares[patch] = std::min(shares[patch], least);
+  if (std::ranges::all_of(shares, [](double share) { return share >= 1; })) return false;
+  bool holds = false;
+  job_.control.attempt(share_of_time, [&] {
+    holds = make_nearer(plc, shares, "otherwise: " + job_.made.missed(), [] { return true; });
+  });
+  return holds;
+}
+
+/// Makes the mesh again with these shares of the tolerance and at most a few times the vertices. Keeps it if
+/// it keeps every guarantee and `is_good_enough`. Returns whether it is kept. `why`: the reason that a note
+/// gives.
+bool Tries::make_nearer(const Plc& plc, const std::vector<double>& shares, const std::string& why,
+                        const std::function<bool()>& is_good_enough) {
+  constexpr std::size_t times_vertices = 3;
   PipelineResult& made = job_.made;
   const std::vector<std::string> notes = made.check.notes;
-  const std::size_t tets = made.result.mesh.tets.size(), before = job_.budget.most();
+  const std::size_t before = job_.budget.most();
   std::size_t most = times_vertices * made.result.statistics.vertices_inserted;
   for (const std::size_t bound : {before, job_.given.mesh.max_vertices})
     if (bound > 0) most = std::min(most, bound);
@@ -475,16 +493,13 @@ bool Tries::come_nearer(const Plc& plc, const std::vector<double>& shares, doubl
   maker_.come_nearer(plc, shares);
   const bool better = find_better(true, [&] {
     maker_.make(plc, seed_);
-    const double now = largest_loss(plc, nullptr);
-    const bool is_halved = 2 * now <= loss && made.result.mesh.tets.size() <= times_tets * tets;
-    if (now > volume_warned_of && !is_halved) throw Hopeless();
+    if (!is_good_enough()) throw Hopeless();
   });
   job_.budget.set_most(before);
   maker_.set_narrow_cells(NarrowCells::bounded_if_cheap);
   if (!better) return false;
   made.check.notes.insert(made.check.notes.begin(), notes.begin(), notes.end());
-  made.check.notes.push_back(fmt::format(
-      "made nearer to smooth surfaces, because a region's volume was off by {:.2g}%", 100 * loss));
+  made.check.notes.push_back("made nearer to smooth surfaces, because " + why);
   return true;
 }
 

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <exception>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -58,6 +59,8 @@ class Tries {
   void keep_volumes(const Plc& plc);
   bool come_nearer(const Plc& plc, const std::vector<double>& shares, double loss);
   bool come_nearer_where_missed(const Plc& plc);
+  bool make_nearer(const Plc& plc, const std::vector<double>& shares, const std::string& why,
+                   const std::function<bool()>& is_good_enough);
 
   /// Tries another way to make a mesh. The present result stays unless it has no mesh or the new one keeps
   /// every guarantee.
