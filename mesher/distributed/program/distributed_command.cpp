@@ -231,9 +231,9 @@ std::string text_of(const LevelReport& level, unsigned number) {
   std::string text = fmt::format("level {}: {} tets in {:.2f} s; {} vertices on smooth or exact features",
                                  number, level.tets, level.seconds, level.on_features);
   if (level.spoilt > 0 || level.made_room > 0)
-    text += fmt::format(
-        ", {} tets made poor or invalid by placing them, {} moves of other vertices to mend these",
-        level.spoilt, level.made_room);
+    text +=
+        fmt::format("; placing these made {} tets poor or invalid, which {} moves of other vertices mended",
+                    level.spoilt, level.made_room);
   if (level.drawn_back > 0)
     text += fmt::format(", {} vertices off their places, by at most {:.3g}", level.drawn_back,
                         level.farthest_off);
