@@ -179,8 +179,7 @@ void check_labels(const MeshToCheck& to_check, Index face, Findings& findings) {
     findings.add(
         guarantee::patch_regions, where, {face},
         "Face {} at {} separates the regions {} and {}, but its patch {} (tag {}) separates {} and {}; "
-        "a region is "
-        "wrong or the face belongs to another patch.",
+        "a region is wrong or the face belongs to another patch.",
         face, At{where}, regions[0], regions[1], id, patch.tag, patch.regions[0], patch.regions[1]);
 }
 
