@@ -64,10 +64,10 @@ std::vector<std::string> option_warnings(const MeshArguments& a, const Plc& plc)
                     "0, which keeps the facets as they are.",
                     a.mesh.bounds.distance, a.mesh.bounds.distance / diagonal));
   if (a.complex.planar_tolerance > large_planar_tolerance)
-    warnings.push_back(
-        fmt::format("--planar-tolerance {}: facets were merged into flat ones, up to {:.6g} away, and the "
-                    "mesh follows these; without this option, curved faces stay curved.",
-                    a.complex.planar_tolerance, plc.largest_deviation));
+    warnings.push_back(fmt::format(
+        "--planar-tolerance {}: facets were merged into planar patches up to {:.6g} away from them, and the "
+        "mesh follows these patches; without this option, curved faces stay curved.",
+        a.complex.planar_tolerance, plc.largest_deviation));
   if (!(a.names.empty() && a.given_names.empty()) &&
       !report::keeps_names(io::format_of(a.output, a.output_format)))
     warnings.push_back(fmt::format("{}: {} has no place for names; numbers are kept.",

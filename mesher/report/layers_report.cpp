@@ -21,8 +21,8 @@ std::string layers_text(const LayersReport& report) {
   std::string text;
   for (std::size_t k = 0; k < std::min(listed, report.patches.size()); ++k) {
     const LayersReport::Patch& p = report.patches[k];
-    text += fmt::format("  layers: {} covered to {:.1f}%, mean thickness {:.4g} of {:.4g} asked for\n",
-                        p.name, percent(p.covered, p.area), p.mean, p.asked);
+    text += fmt::format("  layers: {} covered to {:.1f}%, mean thickness {:.4g}, asked for {:.4g}\n", p.name,
+                        percent(p.covered, p.area), p.mean, p.asked);
   }
   if (report.patches.size() > listed)
     text += fmt::format("  ... and {} more faces (--report lists all)\n", report.patches.size() - listed);

@@ -26,9 +26,8 @@ std::string place_regions(const std::vector<PolygonSoup>& soups, PlcOptions opti
     const Index missing = place_region_points(plc, merged);
     return warnings_text(plc) +
            (missing > 0
-                ? fmt::format(
-                      "{} regions or cavities get no point, because they are too thin for one inside\n",
-                      missing)
+                ? fmt::format("{} regions or cavities get no point, because they are too thin to hold one\n",
+                              missing)
                 : "");
   } catch (const PlcError& error) {
     return fmt::format("no region points are written, because the facets do not form a valid complex: {}\n",

@@ -21,8 +21,8 @@ std::string split_text(const SplitReport& report) {
           p.name, p.sides.minus, p.sides.plus, p.faces, p.area, p.where.x, p.where.y, p.where.z);
     if (p.closed > 0)
       text += fmt::format(
-          "  not split: {} triangles of {}, which cannot open because all their corners are on its front, "
-          "for example at ({:.6g}, {:.6g}, {:.6g})\n",
+          "  not split: {} triangles of {}, which cannot open because all their corners are on the front of "
+          "the crack, for example at ({:.6g}, {:.6g}, {:.6g})\n",
           p.closed, p.name, p.closed_at.x, p.closed_at.y, p.closed_at.z);
   }
   if (report.patches.size() > listed)

@@ -49,10 +49,9 @@ Mesh load(const std::string& path, const OmLayout& layout) {
   if (!read) fail(path, "OpenMesh cannot read it");
   if (mesh.n_vertices() != layout.vertices || mesh.n_faces() != layout.faces)
     fail(path,
-         fmt::format(
-             "byte 4: expected {} vertices and {} faces, but OpenMesh makes {} and {} of them (an edge of "
-             "more than two faces?); save the surface as .off",
-             layout.vertices, layout.faces, mesh.n_vertices(), mesh.n_faces()));
+         fmt::format("byte 4: expected {} vertices and {} faces, but OpenMesh has read {} and {} (an edge of "
+                     "more than two faces?); save the surface as .off",
+                     layout.vertices, layout.faces, mesh.n_vertices(), mesh.n_faces()));
   return mesh;
 }
 

@@ -15,8 +15,8 @@ void add_notes(const SurfaceReport& report, std::size_t number, std::vector<std:
   note(notes, name, report.deleted_faces, "faces are marked as deleted and were left out");
   note(notes, name, report.isolated_vertices, "vertices without a face were left out");
   note(notes, name, report.detached_faces,
-       "faces had been detached by OpenMesh at an edge or vertex that it cannot represent; "
-       "their vertices were welded to their neighbours again");
+       "faces had been detached by OpenMesh at an edge or vertex that it cannot represent; their vertices "
+       "were welded to those of the neighbouring faces again");
   note(notes, name, report.non_manifold_vertices, "vertices join several fans of faces");
   note(notes, name, report.border_edges,
        "edges have one face; they are closed where they coincide with others");

@@ -336,7 +336,7 @@ class Sorter {
     tell(meeting_,
          "left out, because OpenCASCADE's general fuse made no cut at a face or at the middle of another "
          "edge inside a solid",
-         "end edges before faces, and cut edges where others meet them");
+         "end edges before they reach a face, and cut an edge where another edge meets it");
     if (!renumbered_.empty())
       topology_.notes.push_back(fmt::format(
           "{}: {} and gets the number of the latter there{}", file_, renumbered_.front(),

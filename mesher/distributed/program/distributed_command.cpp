@@ -232,11 +232,11 @@ std::string text_of(const LevelReport& level, unsigned number) {
                                  number, level.tets, level.seconds, level.on_features);
   if (level.spoilt > 0 || level.made_room > 0)
     text += fmt::format(
-        ", {} tets made poor or invalid by placing them, {} moves of other vertices to mend these",
+        "; placing these made {} tets poor or invalid; other vertices were moved {} times to mend tets",
         level.spoilt, level.made_room);
   if (level.drawn_back > 0)
-    text += fmt::format(", {} vertices off their places, by at most {:.3g}", level.drawn_back,
-                        level.farthest_off);
+    text += fmt::format("; {} vertices did not reach their places and are at most {:.3g} away",
+                        level.drawn_back, level.farthest_off);
   return text + '\n';
 }
 
@@ -413,8 +413,8 @@ process::ExitCode mesh_distributed(process::Process& process, const command::Mes
   if (arguments.order == 2) report.order = mesh.raise_order(shape);
   if (report.order && !arguments.quiet)
     process.console.tell(
-        "second order: {} nodes, {} of them not at the middles of their edges; {} straightened, off their "
-        "places by at most {:.3g}\n",
+        "second order: {} nodes, {} of them not at the middles of their edges; {} straightened, at most "
+        "{:.3g} from their places on the shape\n",
         report.order->nodes, report.order->curved, report.order->straightened, report.order->farthest_off);
   stop();
   const Stopwatch stopwatch;

@@ -284,8 +284,8 @@ class Certification {
     const PetscInt least = tets_of_[f] == 1 ? -1 : least_region_[f];
     if (least == wanted.first && most_region_[f] == wanted.second) return;
     find(guarantee::face_regions, centre,
-         "A face at {} on patch {} (tag {}) lies between the regions {} and {}, the patch between {} and {} "
-         "(-1 is outside).",
+         "A face at {} on patch {} (tag {}) lies between the regions {} and {}, but the patch between {} and "
+         "{} (-1 is outside).",
          At{centre}, patch, plc_.patches[patch].tag, least, most_region_[f], wanted.first, wanted.second);
   }
 

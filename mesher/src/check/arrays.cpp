@@ -46,13 +46,12 @@ void check_corners(const std::vector<std::array<Index, n>>& entities, const TetM
   for (const auto& [i, k, repeated] : all) {
     const Index corner = entities[i][k];
     const Point where = corner < mesh.points.size() ? mesh.points[corner] : Point{};
-    findings.add(
-        guarantee::valid_arrays, where, {i},
-        "{} {}: number {} in the list is point {}, {}; a solver cannot use the mesh. If the mesher made it, "
-        "report it with the input and the options.",
-        kind, i, k, corner,
-        repeated ? "which is in the list already"
-                 : fmt::format("but the mesh has {} points", mesh.points.size()));
+    findings.add(guarantee::valid_arrays, where, {i},
+                 "{} {}: entry {} is point {}, {}; a solver cannot use the mesh. If the mesher made it, "
+                 "report it with the input and the options.",
+                 kind, i, k, corner,
+                 repeated ? "which is an earlier entry, too"
+                          : fmt::format("but the mesh has {} points", mesh.points.size()));
   }
 }
 

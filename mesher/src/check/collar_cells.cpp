@@ -80,7 +80,8 @@ bool is_coarsened(const TetMesh& mesh, const CreaseCorners& creases) {
 }
 
 void add_wrong_mark(const MeshToCheck& to_check, Index tet, std::uint8_t kind, Findings& findings) {
-  constexpr std::array names{"no cell", "a star", "a book"};
+  constexpr std::array names{"no cell", "a star (touching creases at corners only)",
+                             "a book (with an edge on a crease)"};
   const Point where =
       0.5 * (to_check.point(to_check.mesh.tets[tet][0]) + to_check.point(to_check.mesh.tets[tet][1]));
   findings.add(guarantee::collar_cells, where, {tet},

@@ -57,7 +57,7 @@ class ConformityCheck {
     if (sides_.size() < 2 || (sides_.size() == 2 && sides_[0].odd != sides_[1].odd)) return;
     findings_.add(guarantee::conforming, where(),
                   {corners_[0], corners_[1], corners_[2], sides_[0].cell, sides_[1].cell},
-                  "The face of points {}, {}, {} at {} is a side of {} tets, {} {} and {}; tets overlap "
+                  "The face of points {}, {}, {} at {} is shared by {} tets, {} {} and {}; tets overlap "
                   "there. If the mesher made this mesh, report it with the input and the options.",
                   corners_[0], corners_[1], corners_[2], At{where()}, sides_.size(),
                   sides_[0].odd == sides_[1].odd ? "two of them on one side of it:"
@@ -106,11 +106,11 @@ class ConformityCheck {
     const Index face = listed.cell;
     const auto& given = to_check_.mesh.face_regions[face];
     if (given == regions) return;
-    findings_.add(
-        guarantee::face_regions, where(), {face},
-        "Face {} of points {}, {}, {} at {} is listed between the regions {} (behind its normal) and {}, its "
-        "tets are in {} and {}; turn it or correct its regions.",
-        face, corners_[0], corners_[1], corners_[2], At{where()}, given[0], given[1], regions[0], regions[1]);
+    findings_.add(guarantee::face_regions, where(), {face},
+                  "Face {} of points {}, {}, {} at {} is listed between the regions {} (behind its normal) "
+                  "and {}, but its tets are in {} and {}; turn it or correct its regions.",
+                  face, corners_[0], corners_[1], corners_[2], At{where()}, given[0], given[1], regions[0],
+                  regions[1]);
   }
 
   void report_duplicates(Index first, Index second) {

@@ -139,7 +139,7 @@ class CurveCheck {
           last ? Polyline::Nearest{polyline.length(), distance(b, polyline.points().back())}
                : polyline.nearest(b, arc, reach);
       if (here.distance > allowed_ && polyline.nearest(b).distance <= allowed_) {
-        report_gap(b, "has edges that leave it and return elsewhere, or run backwards,");
+        report_gap(b, "has edges that leave it and return elsewhere, or run backwards");
         return;
       }
       if (here.arc <= arc) {
@@ -172,7 +172,7 @@ class CurveCheck {
         "The edges of curve {} (tag {}) and the curve are {:.6g} apart at {} (mesh point {}), allowed is "
         "{:.6g}; {}.",
         id_, curve_.tag, distance, At{where}, point, allowed_,
-        curve_.straight ? "the point is off the straight edge"
+        curve_.straight ? "the point is not on the straight curve"
                         : "use a smaller size there or allow a larger distance");
   }
 

@@ -246,9 +246,10 @@ class LayerCheck {
     const bool inside = cells == 2 && region_of(first[0]) == region_of(first[1]);
     if (lists > 1 || (lists == 0 && !inside)) {
       findings_.add(guarantee::layer_sides, where, {first->cell},
-                    "The side of {} {} at {} is listed {} times; {}.", name_of(first->kind), first->cell,
-                    At{where}, lists,
-                    cells == 1 ? "no other cell has it, so it lies on a boundary or does not conform"
+                    "A side of {} {} at {} is listed {} times as a face; {}.", name_of(first->kind),
+                    first->cell, At{where}, lists,
+                    cells == 1 ? "no other cell has this side, so either it is on the boundary and must be "
+                                 "listed once, or the cells do not conform"
                                : "it must be listed once");
       return;
     }
@@ -430,8 +431,8 @@ void check_core_angles(const TetMesh& mesh, const std::vector<Index>& walls, con
     if (widest <= largest * (1 + slack) && quality.min_dihedral >= least * (1 - slack)) continue;
     findings.add(
         guarantee::core_angles, p[a], {t},
-        "Tet {} beside the layers at {} has dihedral angles from {:.4g} to {:.4g} degrees and face angles "
-        "up to {:.4g}; allowed are {:.4g} to {}, because circumradius / shortest edge is {:.4g}, above "
+        "Tet {} beside the layers at {} has dihedral angles from {:.4g} to {:.4g} degrees and face angles up "
+        "to {:.4g}; {:.4g} to {} degrees are allowed, because circumradius / shortest edge is {:.4g}, above "
         "{:.4g}.",
         t, At{p[a]}, quality.min_dihedral, quality.max_dihedral, largest_face_angle(p[a], p[b], p[c], p[d]),
         least, largest, quality.radius_edge, bounds.radius_edge);

@@ -127,7 +127,7 @@ class WallCheck {
         continue;
       findings_.add(
           guarantee::layer_walls, {}, {},
-          "Layers cover an area of {:.9g} of {:.9g} on patch {}, but the report says {:.9g} of {:.9g}.",
+          "Layers cover {:.9g} of the area {:.9g} of patch {}, but the report says {:.9g} of {:.9g}.",
           of.covered, of.all, patch.tag, patch.covered, patch.area);
     }
   }
@@ -245,7 +245,8 @@ class WallCheck {
       weight = 0;
     }
     if (first != std::array<unsigned, 2>{}) report(sides[0], "has cells on the wrong side");
-    if (bases != expected_bases) report(sides[0], "is not the base of one cell on each side that has layers");
+    if (bases != expected_bases)
+      report(sides[0], "must be the base of exactly one cell on each side that has layers");
   }
 
   void report(const WallSide& side, std::string_view what) {

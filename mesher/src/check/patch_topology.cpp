@@ -92,11 +92,10 @@ class TopologyCheck {
       return;
     }
     if (of_patch)
-      findings_.add(
-          guarantee::patch_border, where, {id_, side.ends[0], side.ends[1]},
-          "Patch {} (tag {}) has {} faces at the edge of points {} and {} on its curve {} at {}, in the "
-          "complex it has {}; faces are missing or tagged with another patch.",
-          id_, patch_.tag, last - first, side.ends[0], side.ends[1], curve, At{where}, expected);
+      findings_.add(guarantee::patch_border, where, {id_, side.ends[0], side.ends[1]},
+                    "Patch {} (tag {}) has {} faces at the edge of points {} and {} on its curve {} at {}, "
+                    "but {} in the complex; faces are missing or tagged with another patch.",
+                    id_, patch_.tag, last - first, side.ends[0], side.ends[1], curve, At{where}, expected);
     else if (last - first == 1)
       findings_.add(guarantee::patch_border, where, {id_, side.face},
                     "Patch {} (tag {}) ends at the edge of points {} and {} at {}, where it has no curve "

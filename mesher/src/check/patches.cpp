@@ -142,7 +142,7 @@ class PatchCheck {
         on_face ? fmt::format("Face {} of patch {} (tag {}) is {:.6g} away from the patch at {}", sample.face,
                               id_, patch_.tag, sample.distance, At{sample.place})
                 : fmt::format(
-                      "Face {}, the nearest of patch {} (tag {}), is {:.6g} away from the patch's "
+                      "Face {}, the nearest mesh face of patch {} (tag {}), is {:.6g} away from the patch's "
                       "point at {}",
                       sample.face, id_, patch_.tag, sample.distance, At{sample.place});
     findings_.add(guarantee::patch_distance, sample.place, {id_, sample.face},
@@ -176,11 +176,11 @@ void check_labels(const MeshToCheck& to_check, Index face, Findings& findings) {
                  At{where}, mesh.face_tag[face], id, patch.tag);
   const auto& regions = mesh.face_regions[face];
   if (regions != patch.regions && !reversed(to_check, face))
-    findings.add(guarantee::patch_regions, where, {face},
-                 "Face {} at {} separates the regions {} and {}, its patch {} (tag {}) separates {} and {}; "
-                 "a region is "
-                 "wrong or the face belongs to another patch.",
-                 face, At{where}, regions[0], regions[1], id, patch.tag, patch.regions[0], patch.regions[1]);
+    findings.add(
+        guarantee::patch_regions, where, {face},
+        "Face {} at {} separates the regions {} and {}, but its patch {} (tag {}) separates {} and {}; "
+        "a region is wrong or the face belongs to another patch.",
+        face, At{where}, regions[0], regions[1], id, patch.tag, patch.regions[0], patch.regions[1]);
 }
 
 }  // namespace

@@ -153,7 +153,7 @@ class PeriodicCheck {
       if (const double gap = distance(pair_.motion(at(node)), at(image)); !(gap <= allowed))
         findings_.add(guarantee::periodic_places, at(image), {node, image},
                       "Node {} at {} is {:.3g} from the image of node {} at {} in periodic pair {}; rounding "
-                      "explains {:.3g}.",
+                      "explains at most {:.3g}.",
                       image, At{at(image)}, gap, node, At{at(node)}, number_, allowed);
   }
 

@@ -37,7 +37,7 @@ void check_off_feature(std::string_view guarantee, const Named& node, const Poin
 
 bool check_edges_at(const NamedFeature& curve, const Point& at, std::ptrdiff_t edges, std::ptrdiff_t wanted,
                     Findings& findings) {
-  if (edges != wanted) report_gap(curve, at, fmt::format("has {} edges, not {},", edges, wanted), findings);
+  if (edges != wanted) report_gap(curve, at, fmt::format("has {} edges, not {}", edges, wanted), findings);
   return edges == wanted;
 }
 

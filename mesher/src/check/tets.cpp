@@ -121,12 +121,11 @@ void report_missed_angles(const MeshToCheck& to_check, const ThinCells& thin, Al
                           Findings& findings) {
   missed.collars.report(to_check, [&](Index tet, const std::string& features) {
     const Point centre = corners_of(to_check.mesh, tet).centre();
-    findings.add(
-        guarantee::collar_dihedral, centre, {tet},
-        "Tet {} of a collar at {}, {}, has a dihedral angle of {:.6g} degrees, allowed are {:.6g}; a smaller "
-        "size there resolves the crease better.",
-        tet, At{centre}, features, measure_tet(to_check.mesh, tet).max_dihedral,
-        to_check.options.bounds.collar_angle);
+    findings.add(guarantee::collar_dihedral, centre, {tet},
+                 "Tet {} of a collar at {}, {}, has a dihedral angle of {:.6g} degrees, at most {:.6g} are "
+                 "allowed; a smaller size there resolves the crease better.",
+                 tet, At{centre}, features, measure_tet(to_check.mesh, tet).max_dihedral,
+                 to_check.options.bounds.collar_angle);
   });
   missed.thin.report(to_check, [&](Index tet, const std::string& features) {
     const CornersOfTet p = corners_of(to_check.mesh, tet);
@@ -134,8 +133,8 @@ void report_missed_angles(const MeshToCheck& to_check, const ThinCells& thin, Al
     findings.add(
         guarantee::thin_angles, p.centre(), {tet},
         "Tet {} at {}, {}, has dihedral angles from {:.6g} to {:.6g} degrees and face angles up to {:.6g}; "
-        "allowed are {:.6g} to {:.6g}, because circumradius / shortest edge is {:.6g}, above {:.6g}; check "
-        "with the smallest angle of thin tets that the mesh was made with.",
+        "{:.6g} to {:.6g} degrees are allowed, because circumradius / shortest edge is {:.6g}, above {:.6g}. "
+        "If the mesh was made with another thin-angle, check it with the same value.",
         tet, At{p.centre()}, features, quality.min_dihedral, quality.max_dihedral,
         largest_face_angle(p.a, p.b, p.c, p.d), thin.smallest_angle(tet), ThinCells::largest_angle,
         quality.radius_edge, to_check.options.bounds.radius_edge);

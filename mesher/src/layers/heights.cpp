@@ -52,11 +52,11 @@ std::string text_of(Cause cause) {
     case Cause::ends: return "layers end there, at faces without layers or at facets inside";
     case Cause::direction:
       return "the faces there meet so sharply that no direction leads steeply away from all of them";
-    case Cause::patch: return "nodes would leave a curved face without layers";
+    case Cause::patch: return "nodes would move off a curved face that has no layers";
     case Cause::gap: return "the gap to the opposite face is narrow";
     case Cause::fold: return "cells would fold, at a sharp edge or a curved wall";
     case Cause::core: return "tetrahedra beside the layers would miss their bounds";
-    case Cause::step: return "the layers beside them are lower";
+    case Cause::step: return "the layers at neighbouring nodes are lower";
     default: return "";
   }
 }

@@ -62,9 +62,10 @@ void set(ReadWall& read, const std::string& setting, const std::string& text) {
   const std::optional<double> value =
       equals == std::string::npos ? std::nullopt : number_in(std::string_view(setting).substr(equals + 1));
   if (key != "first" && key != "growth" && key != "count" && key != "thickness")
-    refuse(text, fmt::format("sets '{}'; after the faces give first, growth, count, thickness or region, "
-                             "as in inlet,wall:first=0.1,growth=1.2,count=3",
-                             key));
+    refuse(text, fmt::format(
+                     "sets '{}'; the settings after the faces are first, growth, count, thickness or region, "
+                     "as in inlet,wall:first=0.1,growth=1.2,count=3",
+                     key));
   if (!value) refuse(text, fmt::format("sets {} to no number", key));
   if (key == "growth") {
     if (*value < 1 || *value > largest_growth)

@@ -138,19 +138,20 @@ void require_consistent(const RunOptions& o) {
   require(!o.split.any() || !o.periodic.any(),
           "split and keep-apart would copy nodes on periodic faces, and the copies would have no images; "
           "leave out either these or periodic");
-  require(o.coarsen || !o.periodic.any(),
-          "periodic needs coarsening, for the elements beside the faces; leave it out, or set coarsen on");
+  require(
+      o.coarsen || !o.periodic.any(),
+      "periodic needs coarsening, for the elements beside the faces; leave periodic out, or set coarsen on");
   require(o.faces.empty() || o.dimension == 2,
           "faces are for triangles alone; add dimension 2, or leave them out");
   require(o.triangle_elements == TriangleElements::shell || o.dimension == 2,
           "triangle-elements are for triangles alone; add dimension 2, or leave them out");
   const bool is_papers = o.mesh.profile == Profile::paper;
   require(o.start != Start::constrained || (o.coarsen && !is_papers),
-          "start constrained needs coarsening, which coarsen off and profile paper switch off; leave one of "
-          "them out");
+          "start constrained needs coarsening, which coarsen off and profile paper switch off; leave out "
+          "either start constrained or these");
   require(!o.mesh.bounds.interior_node || (o.coarsen && !is_papers),
-          "interior-node needs coarsening, which coarsen off and profile paper switch off; leave one of them "
-          "out");
+          "interior-node needs coarsening, which coarsen off and profile paper switch off; leave out either "
+          "interior-node or these");
   require(!is_papers || o.mesh.bounds.radius_edge * o.mesh.bounds.radius_edge > 8 ||
               !o.mesh.bounds.thin_in_narrow_places_only,
           "radius-edge must be above 2 sqrt 2 with profile paper; make it 2.83 or more");

@@ -21,7 +21,8 @@ constexpr double at_end = 1e-9;  // relative to the diagonal; patches this near 
                                  // the end
 
 constexpr std::string_view grammar =
-    "a pair is x, y, z or FIRST=SECOND, which :translation,DX,DY,DZ or :rotation,AXIS,DEGREES may follow";
+    "a pair is x, y, z or FIRST=SECOND, optionally followed by :translation,DX,DY,DZ or "
+    ":rotation,AXIS,DEGREES";
 
 [[noreturn]] void refuse(const std::string& text, const std::string& why) {
   throw OptionError(fmt::format("periodic '{}': {}", text, why));

@@ -142,8 +142,10 @@ bool MeshMaker::take_sheathed_rods() {
   PipelineResult before = std::exchange(job_.made, {});
   if (is_good_with_sheaths(rods)) {
     is_constrained_ = false;
-    job_.made.check.notes.push_back(fmt::format(
-        "made of rings in and around rods that are far thinner than the elements: {}", rods.size()));
+    job_.made.check.notes.push_back(
+        fmt::format("made of rings of vertices in and around rods that are far thinner than the elements; "
+                    "number of rods: {}",
+                    rods.size()));
     return true;
   }
   no_sheaths_ = job_.plc;

@@ -152,9 +152,10 @@ void refine(MeshJob& job, Fineness fineness) {
     throw FarTooFine{counter.most()};
   if (result.status == MeshStatus::cancelled && job.control.out_of_time()) job.control.stop();
   if (job.hit_bound())
-    result.message = describe_explosion(*job.plc, job.budget.most(), result.where) +
-                     "; mend the features that nearly meet there, raise the repair tolerance "
-                     "(repair-tolerance), wrap it (repair wrap), or let the refinement go on (max-vertices)";
+    result.message =
+        describe_explosion(*job.plc, job.budget.most(), result.where) +
+        "; mend the features that nearly meet there, raise the repair tolerance (repair-tolerance), wrap the "
+        "input (repair wrap), or let the refinement go on (max-vertices)";
   if (result.status == MeshStatus::cancelled || result.status == MeshStatus::budget_hit) throw Ended();
   job.refined_with.bounds.lower_where_forced = result.has_narrow_cells;
 }

@@ -367,8 +367,9 @@ void Tries::try_narrow_places_otherwise(const Plc& plc) {
   if (find_better(true, [&] { maker_.make(plc, job_.given.mesh.seed); })) {
     seed_ = job_.given.mesh.seed;
     narrow_cells_ = otherwise;
-    made.check.notes.push_back(fmt::format("made with {} narrow places, because otherwise: {}",
-                                           were_left ? "a bounded ratio in" : "any ratio in", missed));
+    made.check.notes.push_back(
+        fmt::format("made with {} narrow places, because otherwise: {}",
+                    were_left ? "a bounded radius-edge ratio in" : "any radius-edge ratio in", missed));
   }
   job_.budget.set_most(before);
   maker_.set_narrow_cells(NarrowCells::bounded_if_cheap);

@@ -334,7 +334,7 @@ bool Refinement::check_collars() { return !outcome_.given_up() && collar_review_
 bool Refinement::stopped(std::size_t planned_vertices) {
   if (most_with_narrow_cells_ > 0 && mesh_.vertex_count() > most_with_narrow_cells_)
     outcome_.stop(MeshStatus::budget_hit, mesh_.point(mesh_.last_vertex()),
-                  "narrow places take too many vertices", "leave their ratio unbounded");
+                  "narrow places take too many vertices", "leave the radius-edge ratio unbounded in them");
   const bool spent = outcome_.stopped() || is_budget_spent(planned_vertices);
   narrow_cells_are_dear_ =
       most_with_narrow_cells_ > 0 && outcome_.status() == MeshStatus::budget_hit && !budget_.is_out_of_time();
