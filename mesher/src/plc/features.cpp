@@ -30,7 +30,8 @@ class SegmentTest {
       return true;
     if (clusters_.seed[s] == clusters_.seed[t]) return false;
     const double cosine = dot(clusters_.normal[s], clusters_.normal[t]);
-    // Two sheets folded onto each other need a curve at the fold, because no mesh can follow them otherwise.
+    // Soups that give their own features get a further curve only where two sheets are folded onto each
+    // other, because no mesh can follow such a fold without a curve.
     if (draft_.soup_gives_features[draft_.origins[s].soup]) return cosine < 0;
     return every_fold_ || cosine < smallest_cosine_;
   }

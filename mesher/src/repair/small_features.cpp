@@ -84,7 +84,8 @@ class SmallOnes {
   bool is_kept(Index p) const { return kept_[p]; }
 
  private:
-  // Returns the mean width, or infinity if a triangle is as wide as the size.
+  // Returns the mean width; infinity if a triangle is wider than `size_`, so that the patch is not narrow
+  // everywhere.
   double width_of(const Plc::Patch& patch) const {
     double area = 0, border = 0;
     for (Index t = patch.first_triangle; t < patch.first_triangle + patch.triangle_count; ++t) {
