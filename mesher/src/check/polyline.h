@@ -12,8 +12,8 @@ struct NearestOnSegment {
 };
 NearestOnSegment nearest_on_segment(const Point& p, const Point& a, const Point& b);
 
-/// A chain of segments. Positions on it are arc lengths from its start. A closed one repeats its first point
-/// at the end.
+/// A chain of segments. Positions on it are arc lengths from its start. A closed polyline repeats its first
+/// point at the end.
 class Polyline {
  public:
   /// Makes a polyline from at least two points.

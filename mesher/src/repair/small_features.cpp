@@ -123,7 +123,7 @@ class SmallOnes {
     return thin;
   }
 
-  // Keeps the patches of a tag if all of them are small, except if the tag is only a number.
+  // Keeps all patches of a tag if all of them are small, unless the tag is only a number of a CAD face.
   void keep_groups(const ComplexDraft& draft) {
     if (plc_.numbered_patches) return;
     std::set<Tag> stay;
