@@ -115,7 +115,7 @@ class Placement {
     has_way_.assign(n, false);
   }
 
-  // Finds the places of vertices; the owners do so for all ranks.
+  // Finds the places of vertices. The owner of a vertex finds the place for all ranks that have the vertex.
   void find_places() {
     targets_ = origins_;
     for (std::size_t v = 0; v < mesh_->features.size(); ++v)
@@ -407,8 +407,8 @@ class Placement {
     return around;
   }
 
-  /// Moves vertices that moved back forward again, if their tets permit that by now. Returns whether any
-  /// vertex moved.
+  /// Moves vertices forward again that were moved back before, if their tets permit it by now. Returns
+  /// whether any vertex moved.
   bool try_again(unsigned sweep) {
     std::vector<PetscInt> wishes(mesh_->points.size(), 0);
     for (std::size_t v = 0; v < wishes.size(); ++v) wishes[v] = has_way_[v] && back_[v] > 0 ? 1 : 0;

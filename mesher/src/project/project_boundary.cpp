@@ -131,7 +131,7 @@ class BoundaryProjection {
       for (const auto& pair : faces.nodes) stays_.insert(pair.begin(), pair.end());
   }
 
-  // Relaxes these tets, and moves vertices back, until all are good.
+  // Relaxes the given tets, and moves vertices back, until all tets keep their bounds.
   void make_room(std::vector<Index> tets) {
     do {
       for (tets = room_.relax(std::move(tets)); !tets.empty();) tets = give_way(tets);

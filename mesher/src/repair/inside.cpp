@@ -183,7 +183,7 @@ class BoundaryKeeper {
     return soups;
   }
 
-  // Labels the shells that are inside this soup and inside no earlier one.
+  // Labels the shells that are inside this soup but not inside an earlier soup.
   void weigh(Index soup) {
     std::vector<int> weights(sheets_.size());
     for (Index s = 0; s < sheets_.size(); ++s) weights[s] = weight(s, soup);
