@@ -6,7 +6,7 @@
 
 namespace collarmesh::checks {
 
-/// Distance from p to the segment ab, and the position of the nearest point along it (0 to 1).
+/// The distance from p to the segment ab, and the position of the nearest point on the segment (0 to 1).
 struct NearestOnSegment {
   double distance, parameter;
 };
