@@ -86,7 +86,7 @@ std::string words_of(ExitCode code) {
   return "unknown";
 }
 
-/// Returns whether a mesh was written: meshes that no solver can use are not.
+/// Returns whether a mesh was written: a mesh that no solver can use is not written.
 bool has_mesh(const Result& result) {
   return is_meshed(result.code) && result.report.is_object() && result.report.contains("mesh");
 }

@@ -45,8 +45,8 @@ Plc build_any(files::ComplexInput& input, const RunOptions& options) {
   }
 }
 
-/// Predicts meshes. `read` is the time in seconds that reading and building the complex took: the run itself
-/// needs it again.
+/// Predicts meshes. `read` is the time in seconds that reading and building the complex took. It is added to
+/// each prediction, because a run has to do this again.
 std::vector<Prediction> predictions(process::Process& process, const InfoArguments& arguments, const Plc& plc,
                                     double read) {
   if (arguments.predicted_sizes.empty()) return {};

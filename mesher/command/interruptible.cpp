@@ -6,7 +6,8 @@ namespace collarmesh::command {
 
 namespace {
 
-/// A report of work of OpenCASCADE during its lifetime, to the supervisor and to the record of costs.
+/// An object that reports work of OpenCASCADE, as long as it exists, to the supervisor and to the record of
+/// costs.
 class CadPart {
  public:
   CadPart(process::Supervisor& supervisor, std::string_view doing, std::string_view file, double seconds)

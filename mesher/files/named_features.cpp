@@ -20,7 +20,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::array<std::pair<std::string_view, const char*>, 3> groups{
     {{"patch:", "patches"}, {"curve:", "curves"}, {"region:", "regions"}}};
 
-/// A name that was given on its own.
+/// A single name, such as "walls=1,2", which is added to the text of names.
 struct Given {
   std::string name, group = "patches";
   std::vector<Tag> numbers;

@@ -26,7 +26,7 @@ constexpr std::string_view program = "collarmesh: ";  // prefix of messages
 
 void print(std::string_view message) {
   if (write(STDERR_FILENO, message.data(), message.size()) < 0) {
-    // Nobody is left to report to.
+    // The error has no place to be reported, because standard error itself failed.
   }
 }
 

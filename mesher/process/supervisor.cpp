@@ -50,7 +50,8 @@ struct Supervisor::Shared {
   std::size_t folders_end = 0;
 };
 
-/// A block of SIGCHLD during its lifetime, so that the supervisor can wait for the end of a child.
+/// An object that blocks SIGCHLD as long as it exists, so that the supervisor can wait for the end of a
+/// child.
 class Supervisor::ChildSignal {
  public:
   ChildSignal() {
@@ -76,7 +77,7 @@ class Supervisor::ChildSignal {
 /// Waits for the child and returns how it ended; kills it when a limit is exceeded.
 int Supervisor::wait_for_child(const ChildSignal& ended_signal, bool& out_of_time) const {
   using namespace std::chrono_literals;
-  constexpr double grace = 3;  // seconds; the child's own watcher ends it within one
+  constexpr double grace = 3;  // seconds; the child's own watcher ends it within one second
   for (int status = 0;;) {
     const pid_t ended = waitpid(child, &status, WNOHANG);
     if (ended == child) return status;

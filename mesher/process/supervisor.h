@@ -52,8 +52,8 @@ class Supervisor {
   Shared* shared_ = nullptr;  // memory that child and supervisor share; null without a supervisor
 };
 
-/// A report of work of OpenCASCADE on a file, such as "cutting faces into triangles", during its lifetime.
-/// The inner one of two nested objects counts; all must be made by one thread.
+/// An object that reports work of OpenCASCADE on a file, such as "cutting faces into triangles", as long as
+/// it exists. If two of these objects are nested, the inner one counts. One thread must make all of them.
 class CadWork {
  public:
   /// Begins the work. It may take `seconds`, unless the process has its own limit; 0: any time.

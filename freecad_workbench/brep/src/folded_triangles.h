@@ -7,10 +7,10 @@
 
 namespace collarmesh::brep {
 
-/// Flips triangles without height out of a face's triangulation: triangles in the parameter plane may lie on
-/// one line in space, such as those along a ruling that ends in a cone's apex. If a corner lies on the
-/// opposite side, within `height` (absolute) of it, the side is replaced by an edge to the corner. Sides at
-/// the border of the face stay. Cost: near linear.
+/// Removes triangles without height from a face's triangulation, by flips: the corners of a triangle in the
+/// parameter plane may lie on one line in space, such as those along a ruling that ends in a cone's apex. If
+/// a corner lies on the opposite side, within `height` (absolute) of it, the side is replaced by an edge to
+/// the corner. Sides at the border of the face stay. Cost: near linear.
 void flip_flat_triangles(const std::vector<Point>& points, double height,
                          std::vector<std::array<Index, 3>>& triangles);
 

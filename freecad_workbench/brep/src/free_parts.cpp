@@ -128,7 +128,7 @@ class Faces {
     return least;
   }
 
-  /// Returns places along an edge: one between any two neighbouring points where it meets faces.
+  /// Returns places along an edge: one between each two neighbouring points at which the edge meets faces.
   std::vector<gp_Pnt> places_between(const TopoDS_Edge& edge) const {
     double first = 0, last = 0;
     const Handle(Geom_Curve) curve = BRep_Tool::Curve(edge, first, last);

@@ -239,8 +239,8 @@ class Pieces {
   /// Returns whether a solid shares a piece with another solid.
   bool overlaps(std::size_t solid) const { return common_[solid]; }
 
-  /// Returns the owner of a piece: the first solid that contains it or, if one of the others lies wholly
-  /// inside that solid and would be lost otherwise, that one.
+  /// Returns the owner of a piece: the first of the solids that contain it, except solids inside which
+  /// another of them lies wholly: the inner one would be lost otherwise.
   std::size_t owner(std::size_t piece) const {
     for (const std::size_t s : holders_[piece])
       if (std::none_of(holders_[piece].begin(), holders_[piece].end(),

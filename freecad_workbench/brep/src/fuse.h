@@ -11,8 +11,8 @@ namespace collarmesh::brep {
 
 /// Makes closed solids and internal faces that touch share faces, edges and vertices (general fuse), and
 /// assigns the common part of solids to one of them, with a note. Leaves out solids and faces if the boxes of
-/// their faces meet no others. Solids whose fuse fails stay unchanged, with a note; their surfaces must be
-/// cut later.
+/// their faces meet no boxes of other solids and faces. Solids whose fuse fails stay unchanged, with a note;
+/// their surfaces must be cut later.
 void share_faces(const std::string& file, const CadOptions& options, Topology& topology);
 
 using Fuse = std::shared_ptr<BOPAlgo_Builder>;

@@ -124,8 +124,8 @@ class EdgeCurve {
     return {from + t * chord, t};
   }
 
-  /// Returns parameters from which to search: those of the nearest points of chords that are nearer than the
-  /// chords beside them, and so near that their part of the edge may be the nearest one.
+  /// Returns parameters from which to search for the point nearest to p: one for each chord that is nearer to
+  /// p than the chords beside it, and so near that its part of the edge may have the nearest point.
   std::vector<double> starts_near(const Point& p) const {
     const std::size_t count = points_.size() - 1;
     std::vector<double> distances(count), at(count);

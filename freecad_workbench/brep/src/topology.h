@@ -25,7 +25,7 @@ struct Topology {
     bool open = false;                ///< whether some edges border only one face
   };
 
-  /// An edge or vertex that belongs to no face, or a piece of one.
+  /// An edge or vertex that belongs to no face, or a piece of such an edge.
   struct FreePart {
     TopoDS_Shape shape;
     int number = 0;
@@ -65,13 +65,14 @@ std::vector<TopoDS_Shape> subshapes(const TopoDS_Shape& shape, TopAbs_ShapeEnum 
 
 TopoDS_Compound compound_of(const std::vector<TopoDS_Shape>& shapes);
 
-/// Returns whether a face inside a solid is no part of the solid's boundary.
+/// Returns whether a face of a solid, or an edge of a face, is marked by its orientation (internal or
+/// external) as no part of the boundary.
 bool inside_orientation(const TopoDS_Shape& face);
 
 /// Returns the faces of a solid that are its boundary, oriented.
 std::vector<TopoDS_Shape> boundary_of(const TopoDS_Shape& solid);
 
-/// Returns the pieces of a sub-shape: itself, parts of it, or nothing.
+/// A function that returns the pieces of a sub-shape: the sub-shape itself, parts of it, or nothing.
 using PartsOf = std::function<TopTools_ListOfShape(const TopoDS_Shape&)>;
 
 /// Numbers the parts that the sub-shapes of `before` became in `after`. A part that several sub-shapes became

@@ -54,7 +54,7 @@ class Session {
   process.files.abandon();
   const std::string text = fmt::format("collarmesh: {}\n", message);
   if (write(STDERR_FILENO, text.data(), text.size()) < 0) {
-    // Nobody is left to report to.
+    // If the message cannot be printed, the exit code alone has to tell of the failure.
   }
   MPI_Abort(MPI_COMM_WORLD, static_cast<int>(code));
   std::_Exit(static_cast<int>(code));

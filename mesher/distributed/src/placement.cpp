@@ -115,7 +115,7 @@ class Placement {
     has_way_.assign(n, false);
   }
 
-  // Finds the places of vertices; the owners do so for all ranks.
+  // Finds the places of vertices. The owner of a vertex finds the place for all ranks that have the vertex.
   void find_places() {
     targets_ = origins_;
     for (std::size_t v = 0; v < mesh_->features.size(); ++v)
@@ -169,7 +169,8 @@ class Placement {
     const Vector chord = shape_.plc.points[chain.back()] - shape_.plc.points[chain.front()];
     return p + dot(displacement, chord) / squared_norm(chord) * chord;
   }
-  /// Returns whether a vertex may move. Vertices on features slide along these, but only once they are there.
+  /// Returns whether a vertex may move. A vertex on a feature slides along the feature, but only after it has
+  /// reached its place there.
   bool is_free(std::size_t v) const {
     if (frozen_[v]) return false;
     const auto& [dimension, feature] = mesh_->features[v];
@@ -248,8 +249,8 @@ class Placement {
     return independent(wishes, sweep);
   }
 
-  /// Returns the wished vertices, but only one of two that share a tet: the one with the greater hash of its
-  /// place. All ranks that have a vertex decide alike if they have the same wishes.
+  /// Returns the vertices marked in `wishes`, but only one of two that share a tet: the one whose place has
+  /// the greater hash. All ranks that have a vertex decide alike if they have the same wishes.
   std::vector<Index> independent(const std::vector<PetscInt>& wishes, unsigned sweep) const {
     std::vector<Index> vertices;
     std::vector<PetscInt> yields(mesh_->points.size(), 0);
@@ -366,8 +367,9 @@ class Placement {
     return tried;
   }
 
-  /// Moves back, in each tet that cannot stay, the vertex with the longest displacement or, if all have moved
-  /// back, those that made room. Returns the tets around these vertices.
+  /// Moves back, in each tet that cannot stay, the vertex on a feature with the longest displacement or, if
+  /// all of these have moved back, the vertices that moved to make room. Returns the tets around these
+  /// vertices.
   std::vector<Index> draw_back(const std::vector<Index>& tets) {
     std::vector<PetscInt> marks(mesh_->points.size(), 0);
     const auto mark = [&](const auto& corners) {
@@ -405,8 +407,8 @@ class Placement {
     return around;
   }
 
-  /// Moves vertices that moved back forward again, if their tets permit that by now. Returns whether any
-  /// vertex moved.
+  /// Moves vertices forward again that were moved back before, if their tets permit it by now. Returns
+  /// whether any vertex moved.
   bool try_again(unsigned sweep) {
     std::vector<PetscInt> wishes(mesh_->points.size(), 0);
     for (std::size_t v = 0; v < wishes.size(); ++v) wishes[v] = has_way_[v] && back_[v] > 0 ? 1 : 0;

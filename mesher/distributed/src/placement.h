@@ -13,8 +13,8 @@ namespace collarmesh::distributed {
 /// The shares of their displacement that vertices and mid-edge nodes keep when they move back, step by step.
 inline constexpr std::array<double, 4> shares{1, 0.5, 0.25, 0};
 
-/// Marks those of some points whose displacement is the longest, so that they move back. Returns false if
-/// none has a displacement.
+/// Marks the points with the longest displacement among `points`, so that they move back. Returns false if no
+/// point has a displacement.
 template <class Points, class WayOf>
 bool mark_longest(const Points& points, const WayOf& way_of, std::vector<PetscInt>& marks) {
   double longest = 0;

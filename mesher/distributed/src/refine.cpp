@@ -17,9 +17,8 @@ namespace collarmesh::distributed {
 namespace {
 
 /// Rotations of a tet's corners. PETSc cuts the octahedron in the middle of a tet between the middles of the
-/// edges 01 and 23. Rotating the other three corners by these amounts, with the last corner fixed, chooses
-/// another pair of edges.
-/// PETSc numbers the corners of the eight children so that their own diagonals are those of Bey's rule
+/// edges 01 and 23. A rotation of the first three corners by one of these amounts chooses another pair of
+/// edges. PETSc numbers the corners of the eight children so that their own diagonals are those of Bey's rule
 /// (Tetrahedral grid refinement, 1995): the four tets in the octahedron are cut next between the middles of
 /// this diagonal and of the opposite edge, the other four like the tet that they are similar to. By that rule
 /// all descendants of a tet have at most three shapes, which appear at the first level. So the diagonal is
@@ -67,7 +66,7 @@ LevelReport ParallelMesh::refine(const Shape& shape) {
   PetscInt first = 0, end = 0;
   call(DMPlexGetHeightStratum(dm_, 0, &first, &end));
   // Estimates the number of points of all ranks: for each tet there are two faces, slightly more than one
-  // edge, and a fifth of a vertex or slightly more. PETSc's numbers must reach all of them.
+  // edge, and a fifth of a vertex or slightly more. PETSc's integers must be able to number all of them.
   const std::int64_t points = 8 * 9 * all_reduce(communicator_, std::int64_t{end - first}, MPI_SUM) / 2;
   agree(communicator_, [&] {
     if (order_ != 1) throw OptionError("meshes of second order are not refined; raise the order afterwards");

@@ -26,8 +26,8 @@ struct Bounds {
   std::optional<SurfaceTolerance> tolerance = {};  ///< a tolerance that depends on the place; replaces
                                                    ///< `distance`
   /// Share by which some bounds are tightened until later stages have moved vertices (`project_boundary`):
-  /// the bounds on angles of thin tets, as distances from 0 or 180 degrees, and the bound on the width of
-  /// narrow places. 0 to 0.5.
+  /// the bounds on angles of thin tets (measured from 0 or 180 degrees) and the bound on the width of narrow
+  /// places. 0 to 0.5.
   double reserve = 0;
   /// Lowers the bound on the smallest angle of thin tets where the input forces edges to be short. Every mesh
   /// made with false also keeps the bounds for true.

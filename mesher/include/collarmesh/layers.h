@@ -59,7 +59,8 @@ struct LayersReport {
   std::size_t prisms = 0, pyramids = 0, tets = 0;  ///< cells in the layers
   /// For each corner node in the layers, the wall's node below it (on a wall: itself); none elsewhere.
   std::vector<Index> walls;
-  double largest_step = 1;  ///< largest ratio of the heights of neighbours that have layers
+  double largest_step = 1;  ///< largest ratio of the total heights at two neighbouring nodes that both have
+                            ///< layers
   double seconds = 0;
   bool cancelled = false;
 

@@ -18,9 +18,9 @@ struct MeshMeasures {
   };
 
   double min_dihedral = 180, max_dihedral = 0;  ///< degrees
-  double max_radius_edge =
-      0;  ///< largest ratio of the tets that are neither thin nor in a collar; only theirs is bounded
-  double max_thin_radius_edge = 0;                ///< largest ratio of thin tets; 0: there are none
+  double max_radius_edge = 0;       ///< largest ratio of tets that are neither thin nor in a collar; only the
+                                    ///< ratio of such tets is bounded
+  double max_thin_radius_edge = 0;  ///< largest ratio of thin tets; 0: there are none
   double max_collar_radius_edge = 0;              ///< largest ratio in collars; 0: there are none
   std::array<std::size_t, bins> min_dihedrals{};  ///< tets by their smallest dihedral angle, 10 degrees a bin
   std::array<std::size_t, bins> max_dihedrals{};  ///< tets by their largest dihedral angle

@@ -24,10 +24,10 @@ enum class CollarCreation { in_pass, up_front };
 enum class Profile {
   standard,
   /// Makes exactly the assumptions of the proofs. All features that meet below 90 degrees are creases. A
-  /// feature's point is inserted where it is medial; otherwise the balls around it are split. One bound on
-  /// circumradius / shortest edge holds everywhere during the run, also in collars and outside regions. A
-  /// crease gets its balls when it is isolated. Sheets that face each other get no exception; nothing is
-  /// refined in blocks, coarsened or improved; sizes apply only if they are given.
+  /// feature's point is inserted only if it is medial (paper, section 3.1); otherwise the balls around it are
+  /// split. One bound on circumradius / shortest edge holds everywhere during the run, also in collars and
+  /// outside regions. A crease gets its balls when it is isolated. Sheets that face each other get no
+  /// exception; nothing is refined in blocks, coarsened or improved; sizes apply only if they are given.
   paper
 };
 
@@ -110,9 +110,10 @@ enum class MeshStatus {
 
 /// Counts of the work that the paper's analysis bounds; filled in if MeshOptions::count_work is set.
 struct WorkCounts {
-  std::size_t located = 0;    ///< points and protective balls that were located at a mesh vertex
-  std::size_t relocated = 0;  ///< moves of such a point or ball to a new, nearer vertex
-  std::size_t looks = 0;      ///< inspections of such a point or ball because of a new vertex or a candidate
+  std::size_t located = 0;         ///< points and protective balls that were located at a mesh vertex
+  std::size_t relocated = 0;       ///< moves of such a point or ball to a new, nearer vertex
+  std::size_t looks = 0;           ///< inspections of such a point or ball because of a new vertex, or of a
+                                   ///< candidate for one
   std::size_t gap_queries = 0;     ///< queries of the gap size, with collars created during refinement
   std::size_t gap_cells = 0;       ///< Voronoi cells that these queries explored
   std::size_t gap_interviews = 0;  ///< pieces of features whose distance the queries of gap sizes computed

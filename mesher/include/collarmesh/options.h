@@ -19,7 +19,7 @@ namespace collarmesh {
 
 /// The owner of the common part of several solids of a CAD file.
 enum class SolidOverlap {
-  first,  ///< the first one, or the one that lies wholly inside it
+  first,  ///< the first of these solids, or another one that lies wholly inside it
   region  ///< the common part becomes a region of its own
 };
 
@@ -39,7 +39,8 @@ struct RunOptions : PipelineOptions {
   std::string trace_folder = {};  ///< folder for the steps of the run
   ProgressStyle progress = ProgressStyle::automatic;
   unsigned levels = 1;        ///< times that every tet is cut into eight, on many ranks
-  double slack = 10;          ///< degrees by which angles may then go beyond those of the coarse mesh
+  double slack = 10;          ///< degrees by which angles after these cuts may go beyond those of the coarse
+                              ///< mesh
   bool keep_invalid = false;  ///< write meshes with elements that no solver can use, too
   bool verbose = false, quiet = false;
   std::size_t findings = 20;  ///< findings that `check` lists for each guarantee

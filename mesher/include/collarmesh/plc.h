@@ -75,7 +75,7 @@ struct Plc {
     std::vector<std::pair<Tag, Tag>> replaced_tags;
   };
 
-  /// A part of the input that has no effect or contradicts another part.
+  /// A warning about a part of the input that has no effect or contradicts another part.
   struct Warning {
     std::string message;  ///< full sentence: entity, coordinates, what to do next
     Point where;

@@ -89,10 +89,10 @@ struct RepairReport {
   RepairPlaces merged;           ///< triangles inside solids, which were removed; size: area
   RepairPlaces dropped;          ///< triangles of open sheets outside of all solids, removed; size:
                                  ///< share of the area of all facets
-  RepairPlaces thin_chambers;    ///< thin regions between facets that nearly coincide, now part of their
+  RepairPlaces thin_chambers;    ///< regions between facets that nearly coincide; they became parts of their
                                  ///< neighbours; size: volume
-  RepairPlaces vanished;         ///< regions of valid input, as thin as the tolerance, that are gone; size:
-                                 ///< volume
+  RepairPlaces vanished;         ///< regions of valid input that were as thin as the tolerance and are gone;
+                                 ///< size: volume
   /// Other regions of valid input that were lost; places: points in the regions that took their space.
   RepairPlaces united;
   std::vector<FilledHole> filled;

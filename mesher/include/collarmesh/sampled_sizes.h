@@ -16,7 +16,8 @@ using SizesAt = std::function<std::vector<double>(const std::vector<Point>&)>;
 /// interpolates linearly in the cells. The coarsest grid has cells of 1/64 of the box's longest side. A cell
 /// is refined when the size at a place in it is asked for and the cell is longer than the smallest size at
 /// its corners. A place outside the box gets the size of the nearest place inside. Several threads may call
-/// it at once, and the results do not depend on their order. Exceptions of `sizes` pass through.
+/// the returned field at once, and the results do not depend on their order. Exceptions of `sizes` pass
+/// through.
 SizeField sampled_sizes(SizesAt sizes, const Box& box);
 
 }  // namespace collarmesh

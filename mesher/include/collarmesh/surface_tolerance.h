@@ -76,8 +76,9 @@ struct CoarsePatch {
       by;  ///< largest distance of its triangles from its surface, relative to the distance allowed: above 1
 };
 
-/// Returns the smooth patches whose triangles are farther than a quarter of the tolerance from the surfaces
-/// that they approximate, as estimated from the angles between them. Cost: near linear in the triangles.
+/// Returns the smooth patches whose triangles are farther than a quarter of the tolerance from the surface
+/// that they approximate. Estimates this distance from the angles between the triangles. Cost: near linear in
+/// the triangles.
 std::vector<CoarsePatch> coarse_patches(const Plc& plc, const SurfaceTolerance& tolerance);
 
 }  // namespace collarmesh

@@ -18,7 +18,7 @@ enum class BallReason : std::uint8_t {
   vertex_isolated,  ///< a collar ball: the cell of its crease vertex meets only features that contain the
                     ///< vertex
   curve_isolated,   ///< a collar ball: cells along its crease curve meet only features that contain the curve
-  curve_would_divide,  ///< a collar ball: a subsegment of its crease curve would have been split otherwise
+  curve_would_divide,  ///< a collar ball: without it, a subsegment of its crease curve would have been split
   curve_left           ///< a collar ball: its crease curve had no balls yet when all other work was done
 };
 

@@ -51,18 +51,18 @@ class Watch {
   std::atomic<bool> cancel_{false};
   std::mutex mutex_;  // guards the following members
   std::condition_variable changed_;
-  std::vector<News> news_;  // the last report of each phase since the caller last looked, so that none is
-                            // missed
+  std::vector<News> news_;  // for each phase the last report that the caller has not yet taken, so that no
+                            // phase is missed
   std::string stage_ = "start";
   bool done_ = false;
   std::exception_ptr failure_;
 };
 
 /// Does the work in a thread of its own. Meanwhile checks signals, so that Ctrl-C raises KeyboardInterrupt
-/// within a second, and calls `progress`, None or a callable, with new reports. An exception from it ends the
-/// work, and False cancels it. The last call reports 1. The time limit in seconds ends the work, too; 0:
-/// none. Rethrows exceptions of the work. The work must own all data that it uses. Throws BudgetSpent,
-/// Cancelled, and exceptions of Python.
+/// within a second, and calls `progress`, None or a callable, with new reports. If `progress` raises an
+/// exception, the work ends; if it returns False, the work is cancelled. The last call reports 1. The time
+/// limit in seconds ends the work, too; 0: none. Rethrows exceptions of the work. The work must own all data
+/// that it uses. Throws BudgetSpent, Cancelled, and exceptions of Python.
 void run_watched(std::function<void(Watch&)> work, const pybind11::object& progress, double time_limit);
 
 /// Waits a short time for work that was left running. Call it at the end of the interpreter.

@@ -48,7 +48,7 @@ class ConformityCheck {
       });
       if (duplicate == sides_.end())
         sides_.push_back(use);
-      else if (opposite(use) > corners_[2])  // each tet once, not for each of its four sides
+      else if (opposite(use) > corners_[2])  // report each tet once, not for each of its four sides
         report_duplicates(duplicate->cell, use.cell);
     }
   }

@@ -1,4 +1,5 @@
-// Checks which cells of layers lie on which triangles of walls, by the walls' nodes below them.
+// Checks that cells of layers and triangles of walls fit together: the wall's nodes below a cell tell on
+// which triangle the cell lies.
 #include "check/layer_walls.h"
 
 #include <algorithm>

@@ -64,10 +64,11 @@ struct MeshToCheck {
 };
 
 /// The tets that may exceed the radius-edge bound if their angles are bounded: dihedral angles from below,
-/// and dihedral and face angles by 150 degrees. Only marked tets and collars of a coarsened mesh may, or any
-/// tet if a file has no marks. The lower bound is smaller in two cases. Where features meet at less than
-/// twice the bound, half the angle between them is enough. For a tet with an edge that the input forces to be
-/// short, ForcedEdges::smallest_angle is enough. Both are halved if each tet needs an interior node.
+/// and dihedral and face angles by 150 degrees. Only marked tets and cells of collars in a coarsened mesh may
+/// exceed it; in a mesh from a file without marks, any tet may. The lower bound is smaller in two cases.
+/// Where features meet at less than twice the bound, half the angle between them is enough. For a tet with an
+/// edge that the input forces to be short, ForcedEdges::smallest_angle is enough. Both are halved if each tet
+/// needs an interior node.
 class ThinCells {
  public:
   static constexpr double largest_angle = largest_angle_of_thin_tets;

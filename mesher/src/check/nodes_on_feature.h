@@ -8,7 +8,7 @@
 
 namespace collarmesh::checks {
 
-/// A curve or patch of the complex, from which its nodes may be only so far away.
+/// A curve or patch of the complex, for checking that its nodes are within the allowed distance of it.
 class NodesOnFeature {
  public:
   /// Keeps the to_check by reference.

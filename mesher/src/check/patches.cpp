@@ -130,8 +130,8 @@ class PatchCheck {
                [&](const PatchDistance::Sample& sample, bool on_face) { measure(sample, on_face); });
   }
 
-  /// Returns a distance below which no sample needs its exact distance, because it changes neither the
-  /// maximum nor the verdict.
+  /// Returns a bound: samples with a smaller distance need not be measured exactly, because they change
+  /// neither the largest distance nor the verdict.
   double enough() const { return std::fmin(report_.max_surface_distance, least_allowed_); }
 
   void measure(const PatchDistance::Sample& sample, bool on_face) {

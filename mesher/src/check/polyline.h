@@ -6,14 +6,14 @@
 
 namespace collarmesh::checks {
 
-/// Distance from p to the segment ab, and the position of the nearest point along it (0 to 1).
+/// The distance from p to the segment ab, and the position of the nearest point on the segment (0 to 1).
 struct NearestOnSegment {
   double distance, parameter;
 };
 NearestOnSegment nearest_on_segment(const Point& p, const Point& a, const Point& b);
 
-/// A chain of segments. Positions on it are arc lengths from its start. A closed one repeats its first point
-/// at the end.
+/// A chain of segments. Positions on it are arc lengths from its start. A closed polyline repeats its first
+/// point at the end.
 class Polyline {
  public:
   /// Makes a polyline from at least two points.

@@ -40,15 +40,16 @@ void check_jacobian(const Named& tet, const CurvedTet& nodes, Tag tag, Findings&
 void check_off_feature(std::string_view guarantee, const Named& node, const Point& at, double distance,
                        double allowed, const NamedFeature& feature, Findings& findings);
 
-/// Adds a finding if the edges of a curve do not meet in chains at a point of it: it must have `wanted` of
-/// them. Returns whether it has.
+/// Adds a finding unless `wanted` edges of a curve meet at a point of the curve, as in a chain. Returns
+/// whether they do; `edges` is their number.
 bool check_edges_at(const NamedFeature& curve, const Point& at, std::ptrdiff_t edges, std::ptrdiff_t wanted,
                     Findings& findings);
 
 /// Adds the finding that the edges of a curve are not one chain. `how` follows the curve's name.
 void report_gap(const NamedFeature& curve, const Point& where, std::string_view how, Findings& findings);
 
-/// A measure of features, and the reasons why that of the mesh may differ from that of the complex.
+/// A kind of measure, such as the area of patches, and the reasons why its value in the mesh may differ from
+/// that in the complex.
 struct Measure {
   std::string_view guarantee, name, reasons;
 };

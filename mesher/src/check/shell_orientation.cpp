@@ -117,8 +117,8 @@ class MetSurfaces {
   bool is_orientable(Index patch) { return orientable_[surface_of(patch).first]; }
 
  private:
-  // Returns the patch that represents the surface of this one (the root of the union-find tree), and whether
-  // this one is turned against it.
+  // Returns the patch that represents the surface of the given patch (the root of the union-find tree), and
+  // whether the given patch is turned against it.
   std::pair<Index, bool> surface_of(Index patch) {
     bool turned = false;
     for (; parent_[patch] != patch; patch = parent_[patch]) {

@@ -30,7 +30,7 @@ CornersOfTet corners_of(const TetMesh& mesh, Index tet) {
 /// Tets whose angles miss their bounds. The findings list the worst ones first, with the features there.
 class MissedAngles {
  public:
-  /// `share`: by what factor the worst angle misses its bound; above 1.
+  /// `share`: the factor by which the tet's worst angle misses its bound; above 1.
   void add(Index tet, double share) { missed_.push_back({tet, share}); }
 
   /// Calls `add_finding(tet, features)`, with an empty text for findings that will not be listed.
@@ -63,7 +63,7 @@ void note_angles(const TetQuality& quality, CheckReport& report) {
   report.max_dihedral = std::max(report.max_dihedral, quality.max_dihedral);
 }
 
-/// Returns by what factor the angles of a thin tet miss their bounds.
+/// Returns the factor by which the worst angle of a thin tet misses its bound.
 double missed_share(const TetQuality& quality, double face_angle, double smallest) {
   const double left = 180 - std::max(quality.max_dihedral, face_angle);
   const double share = std::max(smallest / std::max(quality.min_dihedral, 0.0),

@@ -71,8 +71,8 @@ class ThicknessKept {
 
  private:
   static constexpr double allowed = 0.5;       // share of the thickness that may be lost or gained
-  static constexpr double least_facing = 0.9;  // cosine between opposite surfaces; below it they meet at an
-                                               // edge or bend away
+  static constexpr double least_facing = 0.9;  // cosine of the angle between opposite surfaces; if it is
+                                               // less, they meet at an edge or bend away
   // Share of a patch that must face another patch for both to count as sides of a wall. On a smaller share
   // the patches meet in a wedge, whose thickness runs to zero, as where a thread's run-out meets the plane
   // that cuts it.

@@ -12,8 +12,8 @@ namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double infinite = std::numeric_limits<double>::infinity();
-// Limit on rounds in which a place on a curve of several planes is moved to one plane after the other. Few
-// are enough: the planes nearly coincide, or meet in the curve.
+// Limit on the rounds in which a place on a curve between several planar patches is moved to one plane after
+// the other. Few are enough: the planes nearly coincide, or meet in the curve.
 constexpr int most_turns = 20;
 // Points are pulled back to this share of the tolerance, so that rounding cannot leave them outside.
 constexpr double inside = 0.99;

@@ -23,7 +23,7 @@ class PatchDistance {
   /// A sample point on the faces or on the patch, compared with the nearest place on the other of the two.
   struct Sample {
     const Point& place;
-    Index face;        ///< face that the sample lies on, or the nearest one
+    Index face;        ///< face that the sample lies on; for a sample on the patch, the face nearest to it
     double distance;   ///< exact if above `enough`, else an upper bound
     double tolerance;  ///< tolerance at the sample
   };

@@ -12,8 +12,8 @@ class Replacement {
  public:
   struct Move {
     std::filesystem::path from, to;
-    std::filesystem::path kept;  ///< where the file that is replaced stays meanwhile; empty: nowhere, because
-                                 ///< there is none or because this is the only move
+    std::filesystem::path kept;  ///< where the file that is replaced stays meanwhile; empty: no file is
+                                 ///< replaced, or this is the only move, so it need not be kept
   };
 
   Replacement() = default;

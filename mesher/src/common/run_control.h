@@ -35,7 +35,7 @@ class RunControl {
   /// tell this.
   void watch(const std::function<void(const Execution&)>& stage);
 
-  /// Throws Ended if the run is cancelled or out of time, or if `asked`.
+  /// Throws Ended if the run is cancelled or out of time, or if `asked` is true.
   void stop_if_asked(bool asked = false);
   /// Writes the reason into the result and throws Ended.
   [[noreturn]] void stop();

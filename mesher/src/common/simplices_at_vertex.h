@@ -23,9 +23,9 @@ inline bool all_differ(const std::array<Index, 4>& t) {
 }
 
 /// Calls `use(vertex, cells)` for the vertices of a mesh, from several threads at once and in no particular
-/// order. `cells` are the tets that have the vertex and a corner with a larger number, then the listed faces
-/// whose smallest corner it is, both in their order; faces are numbered after all tets. Precondition: corners
-/// are points of the mesh. Cost: linear; 24 bytes per tet.
+/// order. `cells` are first the tets that have the vertex and a corner with a larger number, then the listed
+/// faces in which the vertex has the smallest number; both in their order. Faces are numbered after all tets.
+/// Precondition: corners are points of the mesh. Cost: linear; 24 bytes per tet.
 template <class Use>
 void for_each_vertex_with_cells(const TetMesh& mesh, const Use& use) {
   const std::size_t tets = mesh.tets.size();
@@ -104,9 +104,9 @@ class FittingTetsAtVertex : public EdgesAtVertex {
     fit_ &= take_counts();
   }
 
-  /// Returns whether every triangle whose smallest corner is the vertex is a side of two tets of one region,
-  /// one on either side, and is not a listed face. Returns false without a check if the vertex has more than
-  /// 32 edges.
+  /// Looks at the triangles in which the vertex has the smallest number. Returns whether each of them is a
+  /// side of two tets of one region, one on either side, and is not a listed face. Returns false without a
+  /// check if the vertex has more than 32 edges.
   bool fit() const { return fit_; }
 
  private:
@@ -155,8 +155,8 @@ struct TriangleUse {
   Index largest() const { return static_cast<Index>(larger_corners); }
 };
 
-/// Returns the smallest corner, and the use of the triangle by `cell`. Precondition: the corners `c` are
-/// counterclockwise as seen from outside the tet or from where the face's normal points.
+/// Returns the corner with the smallest number, and the use of the triangle by `cell`. Precondition: the
+/// corners `c` are counterclockwise as seen from outside the tet or from where the face's normal points.
 inline std::pair<Index, TriangleUse> triangle_use(std::array<Index, 3> c, Index cell, std::uint8_t corner) {
   bool odd = false;
   const auto sort_pair = [&](unsigned i, unsigned j) {
@@ -168,7 +168,8 @@ inline std::pair<Index, TriangleUse> triangle_use(std::array<Index, 3> c, Index 
   return {c[0], {pair_key(c[1], c[2]), cell, corner, odd}};
 }
 
-/// The triangles whose smallest corner is a vertex, each with the tets and listed faces that use it.
+/// The triangles in which a given vertex has the smallest number; each with the tets and listed faces that
+/// use the triangle.
 class TrianglesAtVertex {
  public:
   /// Finds the triangles. `cells` as from `for_each_vertex_with_cells`. Precondition: no tet has a corner

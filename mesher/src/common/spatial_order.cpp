@@ -97,7 +97,8 @@ std::vector<SpatialKey> spatial_order(std::span<const Point> points) {
   return keys;
 }
 
-// Sorts by the highest bits of the places first, that is, by large cells, then within each of these cells.
+// First sorts by the highest bits of the places, that is, by large cells; then sorts the items of each large
+// cell.
 std::vector<SpatialKey> spatial_order_by_all_threads(std::span<const Point> points) {
   constexpr std::size_t many = 32768;
   if (points.size() < many) return spatial_order(points);

@@ -11,7 +11,8 @@ namespace {
 
 // A triangle is a needle if its height is below this many planar tolerances.
 constexpr double needle_height = 10;
-// A triangle lower than this many tolerances may belong to a plane that does not match its own normal.
+// A triangle whose height is below this many planar tolerances may belong to a plane that does not match its
+// normal.
 constexpr double foldable_height = 2;
 // The tolerance of a triangle's plane is at most this share of its height, so that the faces of a body
 // smaller than the planar tolerance stay distinct.

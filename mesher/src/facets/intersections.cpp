@@ -142,7 +142,8 @@ class IntersectionFinder {
           in_f += a;
           in_s += b;
         }
-    // All three positions have the sum 3, so two common ones give the third.
+    // The positions 0, 1 and 2 have the sum 3, so the sum of two common corners' positions gives that of the
+    // third corner.
     if (common == 2) return folded(from(f, 4 - in_f), from(s, 4 - in_s));
     if (common == 1) return fans_meet(from(f, in_f), from(s, in_s));
     return common == 0 && triangles_meet(f, s);

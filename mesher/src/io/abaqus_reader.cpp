@@ -560,7 +560,7 @@ class AbaqusReader {
   std::vector<CellPlace> places_;  ///< by element
   std::map<std::string, std::size_t, std::less<>> set_index_;
   std::vector<Set> sets_;
-  std::size_t repeated_members_ = 0;  ///< members that ranges and names of sets stand for
+  std::size_t repeated_members_ = 0;  ///< members added by ranges and by names of other sets
   std::vector<std::pair<std::string, std::vector<Side>>> surfaces_;
   GroupTags groups_;
 };

@@ -70,7 +70,7 @@ class MidNodes {
 };
 
 /// Rejects a mix of first and second order. All cells of volumes must have one order. All triangles must have
-/// this order or no mid-edge nodes at all; so must all quadrangles, and all edges.
+/// this order, or all must have no mid-edge nodes; the same holds for quadrangles and for edges.
 void require_one_order(const std::string& path, const TetMesh& mesh) {
   for (const CellKind kind : all_cell_kinds) {
     const bool in_layers = kind == CellKind::prism || kind == CellKind::pyramid;

@@ -132,7 +132,7 @@ void place_nodes(const TetMesh& mesh, CellKind kind, std::size_t from, MshEntiti
   }
 }
 
-/// Does the same for the corners of all tets, in parallel.
+/// Assigns the corners of all tets in the same way as `place_nodes`, in parallel.
 void place_corners_of_tets(const TetMesh& mesh, MshEntities& result) {
   const bool alone = tbb::this_task_arena::max_concurrency() == 1;
   std::vector<Index> last_tet(mesh.points.size(), none);

@@ -61,7 +61,8 @@ struct Contents {
   std::array<std::vector<Cell>, 4> cells;                ///< by dimension
   std::array<std::map<int, Tag>, 4> physical_of_entity;  ///< the first physical group
   std::array<std::map<int, PartitionEntity>, 4> partition_entities;
-  std::array<std::map<Tag, Tag>, 4> tag_of_physical;  ///< where its name determines it
+  std::array<std::map<Tag, Tag>, 4> tag_of_physical;  ///< the tag of a group, if the group's name determines
+                                                      ///< it
   /// Data of cells by name: cell number and value.
   std::map<std::string, std::vector<std::pair<std::uint64_t, double>>, std::less<>> data{
       {"collar", {}}, {"crease", {}}, {"thin", {}}, {"layer", {}}};

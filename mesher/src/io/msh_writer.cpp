@@ -97,7 +97,8 @@ void write_ghost_elements(FileWriter& out, const TetMesh& mesh, const MshParts& 
 struct EntityMembers {
   std::vector<Index> starts, members;
 
-  /// Groups the members. `entity_of(i)`, for all i below `count`, returns none for members of no group.
+  /// Groups the members. `entity_of(i)` returns the entity of member i, for all i below `count`; none if the
+  /// member belongs to no group.
   template <class EntityOf>
   EntityMembers(std::size_t entity_count, std::size_t count, const EntityOf& entity_of)
       : starts(entity_count + 1) {

@@ -186,7 +186,8 @@ void write_list(const std::string& path, const VtkGrid& like, const std::vector<
   out.commit();
 }
 
-/// Writes the pieces. `told`: the mesh itself has partitions, so they are also written as an array.
+/// Writes the pieces. `told`: whether the mesh itself has partitions, which are then also written as an
+/// array.
 void write_pieces(const std::string& path, const TetMesh& mesh, bool told, bool with_ghosts) {
   const std::vector<Index> numbers = partition_numbers(mesh), owners = partitions_of_points(mesh);
   std::vector<Members> members = members_by_partition(mesh, numbers, with_ghosts);

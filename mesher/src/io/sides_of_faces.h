@@ -41,7 +41,7 @@ void for_each_side_among(const std::vector<std::array<Index, n>>& faces, const T
   });
 }
 
-/// Does the same for all triangles or all quadrangles of a mesh.
+/// Calls `call` in the same way for all triangles or all quadrangles of a mesh.
 template <class Call>
 void for_each_listed_side(const TetMesh& mesh, CellKind kind, const Call& call) {
   if (kind == CellKind::triangle)

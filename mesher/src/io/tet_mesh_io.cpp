@@ -41,7 +41,7 @@ struct TetMeshFormat {
   bool partitions = false;                   ///< has a place for partitions
   void (*write_with_ghost_cells)(const std::string& path, const TetMesh& mesh) = nullptr;
   bool second_order = true;
-  bool surfaces = false;    ///< has a place for meshes of triangles alone, and of curve edges alone
+  bool surfaces = false;    ///< can hold meshes of triangles alone and meshes of curve edges alone
   int order_of_layers = 0;  ///< the highest order of prisms and pyramids; 0: there is no place for them
 };
 

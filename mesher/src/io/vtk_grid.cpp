@@ -140,7 +140,8 @@ class GridMaker {
     });
   }
 
-  /// Returns the region behind (`side` 0) or in front of a face; for a cell of a volume, its own region.
+  /// Returns the region behind a face (`side` 0) or in front of it (1); for a cell of a volume, its own
+  /// region.
   Index region_beside(CellKind kind, std::size_t i, std::size_t side) const {
     const std::size_t dimension = shape_of(kind).dimension;
     if (dimension == 3) return features_of(mesh_, kind)[i];

@@ -54,10 +54,10 @@ constexpr std::string_view vtk_point_ids = "GlobalPointIds", vtk_cell_ids = "Glo
                            vtk_ghosts = "vtkGhostType";
 
 /// Keeps only the cells of volumes and moves the other cells to data of the whole grid, so that views that
-/// cut or select cells show the volume alone. The arrays are named `boundary_` and the name of the cell array
-/// that they continue; `boundary_of` has the numbers of points and cells, so that a reader can tell whether
-/// these were changed. Cell arrays that only concern faces and edges are removed. The names of groups are
-/// added, too.
+/// cut or select cells show the volume alone. Each new array has the name of the cell array from which its
+/// values come, with `boundary_` before it; `boundary_of` has the numbers of points and cells, so that a
+/// reader can tell whether these were changed. Cell arrays that only concern faces and edges are removed. The
+/// names of groups are added, too.
 std::vector<VtkArray> take_boundary(const TetMesh& mesh, VtkGrid& grid);
 constexpr std::string_view vtk_boundary_prefix = "boundary_";
 /// The cell arrays for which `take_boundary` adds arrays of the boundary.

@@ -11,7 +11,8 @@ namespace collarmesh::periodicity {
 
 namespace {
 
-constexpr double near = 0.3;  // a node this near to a place is moved there; relative to the edges at the node
+constexpr double near = 0.3;  // relative to the length of the edges at a node: a node this near to a place is
+                              // moved there
 constexpr double good_removal = 0.3;  // quality that a removal must leave; otherwise the node is kept and
                                       // inserted on the pair's other curve
 constexpr double good_enough = 0.1;   // quality that a move or a removal must leave

@@ -192,7 +192,8 @@ FeatureImages find_images(const PatchPair& pair, const Plc& plc, double distance
 
 std::vector<CurveClass> curve_classes(const std::vector<PatchPair>& pairs,
                                       const std::vector<FeatureImages>& images, std::size_t curves) {
-  std::map<Index, std::vector<CurveImage>> images_of;  // includes originals, by the inverse motion
+  std::map<Index, std::vector<CurveImage>> images_of;  // by curve; with the inverse motion, an original also
+                                                       // counts as an image of its image
   std::vector<bool> is_image(curves, false), seen(curves, false);
   for (std::size_t k = 0; k < pairs.size(); ++k)
     for (const auto& [curve, image] : images[k].curves) {

@@ -46,8 +46,8 @@ std::vector<Point> moved(std::vector<Point> places, const Motion& motion) {
   return places;
 }
 
-/// Adds the moved places of others, except those that are nearer to an existing place than half of their own
-/// spacing.
+/// Adds the moved places of `others`, except a place whose distance from an existing place is less than half
+/// of its own spacing.
 void add_places(std::vector<Point>& places, const std::vector<SpacedPlace>& others, const Motion& motion) {
   constexpr double nearest = 0.5;  // relative to the spacing
   std::vector<DistanceTree::Triangle> before;

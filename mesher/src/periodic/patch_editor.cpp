@@ -13,7 +13,8 @@ namespace collarmesh::periodicity {
 
 namespace {
 
-// A node this near to a place is moved there; relative to the edges at the node.
+// A node this near to a place is moved there. The distance is relative to the length of the edges at the
+// node.
 constexpr double near_in_patch = 0.25;
 constexpr double good_patch_removal = 0.3;    // quality that a removal must leave; otherwise the node is kept
                                               // and inserted on the pair's other patch

@@ -84,7 +84,8 @@ class PatchNodes {
     }
   }
 
-  // Covers the nodes that are too near to this one and connected to it through such nodes.
+  // Covers the nodes that are too near to this node and are connected to it through nodes that are too near
+  // as well.
   void cover(Index i) {
     covered_[i] = true;
     std::vector<Index> stack{i}, seen{i};

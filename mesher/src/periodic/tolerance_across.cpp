@@ -13,7 +13,7 @@ namespace collarmesh::periodicity {
 namespace {
 
 constexpr double slope = 0.1;  // increase of the tolerance per unit of distance from curves that are images
-                               // of each other; beside wedges it is the same
+                               // of each other; the same as beside wedges
 
 struct Sample {
   Point place;

@@ -143,8 +143,8 @@ class CurveFinder {
     chains_.push_back(std::move(chain));
   }
 
-  // Cuts chains at their farthest points until none deviates from a straight line: `passes` compares a point
-  // only with its two neighbours.
+  // Cuts chains at their farthest points until none deviates from a straight line. This is necessary because
+  // `passes` compares a point only with its two neighbours.
   void cut_bent_chains() {
     std::vector<Chain> pieces;
     for (const Chain& chain : chains_) {

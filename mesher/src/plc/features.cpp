@@ -30,7 +30,8 @@ class SegmentTest {
       return true;
     if (clusters_.seed[s] == clusters_.seed[t]) return false;
     const double cosine = dot(clusters_.normal[s], clusters_.normal[t]);
-    // Two sheets folded onto each other need a curve at the fold, because no mesh can follow them otherwise.
+    // Soups that give their own features get a further curve only where two sheets are folded onto each
+    // other, because no mesh can follow such a fold without a curve.
     if (draft_.soup_gives_features[draft_.origins[s].soup]) return cosine < 0;
     return every_fold_ || cosine < smallest_cosine_;
   }
@@ -136,7 +137,7 @@ void fit_plane(ComplexDraft& draft, const std::vector<Index>& triangles, Plc::Pa
     return true;
   };
   if (accept(draft.corner(largest, 0), unit_normal(draft, largest)) || norm(mean) == 0) return;
-  // The mean plane is nearer to all triangles than the plane of a single one.
+  // The mean plane is nearer to all of the triangles than the plane of any single triangle.
   Extent extent{mean / norm(mean)};
   const Point& base = draft.corner(largest, 0);
   for (const Index p : points) {

@@ -9,8 +9,8 @@
 namespace collarmesh::plc {
 
 /// Returns warnings of lost bodies: sets of connected facets in the soups that welding within `distance`
-/// (absolute) or repair removed completely from the complex. Only bodies of at least four facets with an
-/// extent of at most 100 `distance` count. Cost: that of sorting the points.
+/// (absolute) or repair removed completely from the complex. Counts only bodies that have at least four
+/// facets and an extent of at most 100 times `distance`. Cost: that of sorting the points.
 std::vector<Plc::Warning> lost_bodies(std::span<const PolygonSoup> soups, const Plc& plc, double distance);
 
 /// The regions whose volume (within 2%) no region of the repaired complex has, each given by one of its

@@ -141,8 +141,8 @@ class PatchFans {
   std::vector<bool> visited_;  // corners that already are in a fan
 };
 
-// An edge has no reliable direction if it is shorter than this many planar tolerances, and a triangle none if
-// its height is less.
+// The direction of an edge is not reliable if the edge is shorter than this many planar tolerances; nor is
+// that of a triangle if its height is less than this.
 constexpr double noise = 10;
 // A patch has a vertex at a point where it folds to less than this angle (degrees).
 constexpr double folded = 90;

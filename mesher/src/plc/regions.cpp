@@ -269,7 +269,7 @@ class RegionFinder {
     }
   }
 
-  // Returns the chamber that surrounds the component enclosing this chamber.
+  // Returns the chamber around the component of the surface that encloses this chamber.
   Index parent(const BoundedChamber& chamber) {
     return chambers_.find(outer_shell_[components_.find(chamber.inner_shell / 2)]);
   }

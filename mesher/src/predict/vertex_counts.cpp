@@ -15,7 +15,8 @@ namespace {
 
 // Limits on the number of pieces and cubes; beyond these, the remaining ones are not divided.
 constexpr std::size_t most_pieces = 40000, most_cubes = 20000;
-// Limits on the pieces of one segment, and on those of all curves beyond one piece for each segment.
+// Limits on the number of pieces of one segment, and of all curves (not counting the first piece of each
+// segment).
 constexpr double most_pieces_of_segment = 1000, most_pieces_of_curves = 40000;
 constexpr double least_share = 0.002;  // smallest size by walls and strips, relative to the target size
 

@@ -92,8 +92,8 @@ class BoundaryProjection {
     return bounds;
   }
 
-  // Returns the allowed distance of a vertex on the exact geometry from its feature in the complex. If the
-  // tolerance is small, the exact geometry may be farther away from the complex.
+  // Returns the allowed distance of a vertex on the exact geometry from its feature in the complex. The exact
+  // geometry itself may be farther from the complex than that if the tolerance is small.
   double farthest_from(unsigned dimension, Index feature, const Point& p) const {
     if (dimension == 1) return most_off * tolerance_.least_on_curve(plc_.curves[feature]);
     if (!tolerance_.varies()) return most_off * tolerance_.largest();
@@ -131,7 +131,7 @@ class BoundaryProjection {
       for (const auto& pair : faces.nodes) stays_.insert(pair.begin(), pair.end());
   }
 
-  // Relaxes these tets, and moves vertices back, until all are good.
+  // Relaxes the given tets, and moves vertices back, until all tets keep their bounds.
   void make_room(std::vector<Index> tets) {
     do {
       for (tets = room_.relax(std::move(tets)); !tets.empty();) tets = give_way(tets);

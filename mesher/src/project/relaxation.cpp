@@ -155,8 +155,8 @@ const Relaxation::Wanted& Relaxation::wanted(Index tet) const {
   return want;
 }
 
-// Returns the sum of the penalties of the tets at the vertex; any value >= `below` if the sum is not smaller
-// than that.
+// Returns the sum of the penalties of the tets at the vertex. If the sum is not smaller than `below`, may
+// return any value that is not.
 double Relaxation::penalty_around(std::span<const Index> tets, Index vertex, const Point& place,
                                   double below) const {
   double penalty = 0;

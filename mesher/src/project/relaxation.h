@@ -60,7 +60,8 @@ class Relaxation {
 
   void commit();
   void roll_back();
-  /// Returns the number of commits, and whether commits after that number changed a tet at the vertex.
+  /// Return the number of commits so far, and whether commits after the first `since` ones changed a tet at
+  /// the vertex.
   std::uint32_t commits() const { return commits_.now(); }
   bool changed_around(Index vertex, std::uint32_t since) const {
     return any_around_after(commits_, since, vertex);

@@ -14,7 +14,7 @@ namespace collarmesh::projection {
 /// moves arise because the faces of a CAD file may be farther from their edges than features are from each
 /// other.
 inline constexpr double longest_way = 2;
-/// Number of times that vertices that moved back are tried again.
+/// Number of further attempts to move the vertices that were moved back.
 inline constexpr unsigned retries = 2;
 /// Least gain of a move that makes room, relative to the penalty before it.
 inline constexpr double least_gain = 1e-3;

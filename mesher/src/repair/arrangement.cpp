@@ -464,8 +464,8 @@ class Settled {
   KnownSimplices known_;
 };
 
-// A tool that merges corners that come near other corners or edges. Does not compare triangles with each
-// other that remain from its last run.
+// A tool that merges corners that come near other corners or edges. Does not compare two triangles that both
+// remain from its last run.
 class GrainSnapper {
  public:
   GrainSnapper(ComplexDraft& draft, double reach, Work* work, bool cancel, KeptMerges kept)

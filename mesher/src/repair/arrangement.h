@@ -18,9 +18,10 @@ struct ArrangementReport {
   std::vector<Point> places;  ///< some places where triangles met, in the first round
 };
 
-/// The merges of near corners that are kept.
+/// A choice of the merges (of near corners) that are kept.
 enum class KeptMerges {
-  all,  ///< all; merging pauses or resumes after each round of cutting that leaves no fewer intersections
+  all,  ///< all; merging pauses or resumes after each round of cutting that does not lower the number of
+        ///< intersections
   where_nothing_meets  ///< only merges at whose place no facets intersect afterwards
 };
 

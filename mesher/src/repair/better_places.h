@@ -14,10 +14,10 @@ struct BetterPlaces {
   std::vector<Point> taken_back;  ///< a point in each place that was restored
 };
 
-/// Combines two valid states of a draft: returns the later one, but restores places that had less trouble
-/// before, and places whose facets would intersect those of restored ones. The troubles are those of the
-/// complexes of both states. Each is charged to the place of the nearest changed triangle, within `reach`
-/// (absolute). Precondition: as for `Changes`. Cost: O(n log n).
+/// Combines two valid states of a draft: returns the later one, but restores the places (see `Changes`) that
+/// had less trouble before, and places whose facets would intersect those of restored places. The troubles
+/// are those of the complexes of both states. Each is charged to the place of the nearest changed triangle,
+/// within `reach` (absolute). Precondition: as for `Changes`. Cost: O(n log n).
 BetterPlaces better_places(const facets::ComplexDraft& before, const std::vector<Trouble>& troubles_before,
                            const facets::ComplexDraft& after, const std::vector<Trouble>& troubles_after,
                            double reach);

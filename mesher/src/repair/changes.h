@@ -16,12 +16,13 @@ class Changes {
   Changes(const facets::ComplexDraft& before, const facets::ComplexDraft& after);
 
   Index places() const { return places_; }
-  /// Return the place of each triangle of the earlier or the later state; none: both states have it.
+  /// Return the place of each triangle of the earlier or the later state; none for a triangle that both
+  /// states have.
   const std::vector<Index>& place_of_gone() const { return of_gone_; }
   const std::vector<Index>& place_of_come() const { return of_come_; }
 
   /// Returns the later state with the changes at some places undone. Sets `place` to the place of each
-  /// triangle; none: both states have it.
+  /// triangle; none for a triangle that both states have.
   facets::ComplexDraft without(const std::vector<bool>& taken_back, std::vector<Index>& place) const;
 
  private:

@@ -136,8 +136,8 @@ class ChangingTriangles {
   bool consistent(const facets::Corners& corners) const;
 
  private:
-  static constexpr std::size_t few = 8;  // while at most one triangle in eight has changed,
-                                         // changed ones are looked up one by one
+  static constexpr std::size_t few = 8;  // if at most one triangle in eight has changed, changed triangles
+                                         // are looked up one by one
 
   // Returns existing triangles from this number on.
   std::vector<Index> triangles_from(Index first) const;

@@ -25,8 +25,8 @@ struct RepairDistances {
 RepairDistances measure_distances(std::span<const CornerPoints> input, std::span<const CornerPoints> repaired,
                                   std::span<const CornerPoints> filled);
 
-/// The volume that the input encloses, and the part of it that a repaired surface no longer encloses,
-/// measured by winding numbers at places all over the input's bounding box.
+/// The volume that the input encloses, and how much of this volume a repaired surface no longer encloses;
+/// both measured by winding numbers at places all over the input's bounding box.
 struct KeptVolume {
   double input = 0;  ///< absolute; 0 unless most winding numbers are nearly integers, because otherwise the
                      ///< surface is not closed

@@ -24,7 +24,7 @@ struct DuplicateTriangle {
 bool is_odd(const facets::Corners& corners);
 
 /// Returns which triangles cancel, given all triangles of one soup with the same corners. Pairs of opposite
-/// orientation cancel; in a complex, where orientation has no meaning, all but one do.
+/// orientation cancel; in a complex, where orientation has no meaning, all but one of the triangles cancel.
 std::vector<Index> cancelled_among(std::vector<DuplicateTriangle> duplicates, bool in_complex);
 
 /// Drops cancelled triangles and returns their number. Cost: O(n log n).

@@ -106,7 +106,7 @@ std::vector<Loop> find_loops(const ComplexDraft& draft, std::vector<std::array<I
   return loops;
 }
 
-// The area of the surface that each triangle belongs to.
+// The areas of surfaces: for each triangle, the area of the surface that it belongs to.
 class SurfaceAreas {
  public:
   explicit SurfaceAreas(const ComplexDraft& draft) : sets_(draft.triangles.size()) {

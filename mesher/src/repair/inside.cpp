@@ -152,7 +152,7 @@ class BoundaryKeeper {
     for (Index s = 0; s < sheets_.size(); ++s) tangled_[s] = tangled[sets.find(s)];
   }
 
-  // Finds patches: sheets connected by edges that have two sheets.
+  // Finds patches: sets of sheets connected by edges that exactly two sheets share.
   void find_patches() {
     DisjointSets sets(sheets_.size());
     for (Index e = 0; e < edges_.size(); ++e)
@@ -183,7 +183,7 @@ class BoundaryKeeper {
     return soups;
   }
 
-  // Labels the shells that are inside this soup and inside no earlier one.
+  // Labels the shells that are inside this soup but not inside an earlier soup.
   void weigh(Index soup) {
     std::vector<int> weights(sheets_.size());
     for (Index s = 0; s < sheets_.size(); ++s) weights[s] = weight(s, soup);
@@ -215,10 +215,10 @@ class BoundaryKeeper {
     return WindingNumber(std::move(triangles));
   }
 
-  // Removes open sheets: patches at edges where the soup is open. Such a patch bounds nothing if, without it,
-  // the winding number there is nearly an integer; on a boundary it would be the mean of inside and outside.
-  // Starts with the smallest patch: if a box has a wall inside, half of the box could be removed instead,
-  // because the wall closes the other half.
+  // Removes open sheets: patches at edges where the soup is open. Such a patch bounds nothing if the winding
+  // number at the patch, computed without the patch, is nearly an integer; at a boundary it would be the mean
+  // of the numbers inside and outside. Starts with the smallest patch: if a box has a wall inside, half of
+  // the box could be removed instead, because the wall closes the other half.
   void remove_open_sheets(Index soup, std::vector<int>& weights) {
     constexpr std::size_t most = 100;
     for (std::size_t count = 0; count < most; ++count) {

@@ -8,8 +8,9 @@
 namespace collarmesh::repairing {
 
 /// Returns a place where a valid complex has features below a tolerance (absolute), if there is one: curves
-/// that are shorter, features that come closer without meeting, and patches that meet at such a small angle
-/// that they stay closer everywhere. Cost: O(n log n + k) for k pairs of near neighbours.
+/// shorter than the tolerance, features that come closer to each other than the tolerance without meeting,
+/// and patches that meet at so small an angle that they are nowhere farther apart. Cost: O(n log n + k) for k
+/// pairs of near neighbours.
 std::optional<Point> find_noise(const Plc& plc, double tolerance);
 
 /// A place that makes refinement expensive.

@@ -46,8 +46,8 @@ using namespace plc;
 using namespace repairing;
 
 constexpr std::size_t most_rounds = 6;
-// Gaps between borders that are wider than the tolerance are stitched up to this share of the diagonal. Wider
-// ones are taken as intended.
+// Gaps between borders are stitched even if they are wider than the tolerance, but not if they are wider than
+// this share of the diagonal: such gaps are taken as intended.
 constexpr double widest_stitch = 1e-3;
 // If more than this share of the area is in open sheets, which are dropped, soups count as enclosing nothing.
 constexpr double most_in_open_sheets = 0.5;
@@ -474,7 +474,8 @@ RepairedPlc with_lost_regions(RepairedPlc complex, std::span<const PolygonSoup> 
   return complex;
 }
 
-// Returns warnings about the lines of soups without facets that are no curves of the complex.
+// Returns a warning for each tag of lines that no curve of the complex has. Considers only soups without
+// facets.
 std::vector<Plc::Warning> lost_lines(std::span<const PolygonSoup> soups, const Plc& plc) {
   std::map<Tag, Point> lost;
   for (const PolygonSoup& soup : soups)

@@ -84,7 +84,8 @@ class SmallOnes {
   bool is_kept(Index p) const { return kept_[p]; }
 
  private:
-  // Returns the mean width, or infinity if a triangle is as wide as the size.
+  // Returns the mean width; infinity if a triangle is wider than `size_`, so that the patch is not narrow
+  // everywhere.
   double width_of(const Plc::Patch& patch) const {
     double area = 0, border = 0;
     for (Index t = patch.first_triangle; t < patch.first_triangle + patch.triangle_count; ++t) {
@@ -122,7 +123,7 @@ class SmallOnes {
     return thin;
   }
 
-  // Keeps the patches of a tag if all of them are small, except if the tag is only a number.
+  // Keeps all patches of a tag if all of them are small, unless the tag is only a number without a name.
   void keep_groups(const ComplexDraft& draft) {
     if (plc_.numbered_patches) return;
     std::set<Tag> stay;
@@ -290,8 +291,9 @@ class FeatureCollapser {
     });
   }
 
-  // Adds the normals of the triangles across the long sides that are pieces of curves. If `further`, does the
-  // same from a neighbour in a narrow patch, such as the other half of a quadrangle.
+  // Adds the normals of the triangles across the long sides that are pieces of curves. If `further`, also
+  // adds those across the long sides of a neighbour in a narrow patch, such as the other half of a
+  // quadrangle.
   void add_normals_beside(Index t, bool further, std::vector<Vector>& normals) const {
     const Corners& corners = draft_.triangles[t];
     const Needle needle = needle_of(draft_, corners);

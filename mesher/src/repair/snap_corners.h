@@ -24,7 +24,7 @@ class CornerSnapper {
   /// Cuts edges of triangles not examined yet, unless that makes more than `most_triangles` triangles.
   Outcome snap(std::size_t most_triangles);
 
-  /// Allows each edge to be cut once more, even if its pieces are not shorter.
+  /// Allows each edge to be cut once more, even if the pieces are not shorter than the edge.
   void allow_cuts() { cut_before_.clear(); }
 
  private:

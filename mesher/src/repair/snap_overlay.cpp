@@ -52,7 +52,8 @@ void Overlay::find_crossings_inside() {
   });
 }
 
-// Adds to t the corners of s that are near t, except common ones, and records the edges at them.
+// Adds to t the corners of s that are near t, except corners that both have, and records the edges at the
+// added corners.
 void Overlay::find_near_corners(Index s, Index t) {
   const Corners& corners = state_.draft().triangles[t];
   for (unsigned k = 0; k < 3; ++k) {

@@ -49,9 +49,9 @@ class Snapper {
   }
 
  private:
-  // Overlays triangles until nothing changes. Snaps the new corners after each overlay. Stops if an overlay
-  // makes many crossings, more than half as many as the one before, if corners do not settle, or after too
-  // many overlays. Then undoes the changes at places that still change.
+  // Overlays triangles until nothing changes. Snaps the new corners after each overlay. Stops if the number
+  // of crossings that an overlay makes is large and more than half of that of the overlay before, if corners
+  // do not settle, or after too many overlays. In these cases undoes the changes at places that still change.
   SnapReport overlay_until_settled() {
     const ComplexDraft before = state_.triangles().compacted();
     const std::size_t done_before = state_.done().size();

@@ -7,7 +7,8 @@ namespace collarmesh::repairing {
 
 namespace {
 
-// At more than this distance, in radii of a node, the node's triangles are taken together.
+// The triangles of a node are taken together at points whose distance from the node exceeds this many of its
+// radii.
 constexpr double far = 3;
 
 // Returns the signed solid angle of a triangle (Van Oosterom and Strackee 1983), positive for points behind

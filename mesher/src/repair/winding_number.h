@@ -24,9 +24,9 @@ class WindingNumber {
   /// Builds the hierarchy. Cost: O(n).
   explicit WindingNumber(std::vector<WeightedTriangle> triangles);
 
-  /// Returns the winding number at a point, leaving out triangles with the number `left_out`. On a triangle
-  /// that is left out, the result is the mean of its two sides. Cost: O(log n) unless the surface is crumpled
-  /// around the point.
+  /// Returns the winding number at a point, leaving out triangles with the number `left_out`. At a point on a
+  /// triangle that is left out, the result is the mean of the winding numbers on the triangle's two sides.
+  /// Cost: O(log n) unless the surface is crumpled around the point.
   double at(const Point& p, Index left_out = none) const;
 
   /// Returns whether the point is so close to another triangle that rounding alone decides on which side it

@@ -9,7 +9,8 @@ namespace collarmesh::shells {
 ChordLimits::ChordLimits(const SurfaceComplex& complex, const Plc& plc, const std::vector<Index>& point_of,
                          const SurfaceTolerance& tolerance)
     : tolerance_(tolerance), narrow_(plc.points.size()) {
-  constexpr double share = 0.1, least = 1e-3;  // relative: `share` to the width, `least` to the tolerance
+  constexpr double share = 0.1, least = 1e-3;  // `share` is relative to the distance between the curves,
+                                               // `least` to the tolerance
   for_narrow_triangles(complex, [&](const NarrowTriangle& narrow) {
     const auto& triangle = complex.triangles[narrow.triangle];
     for (const Index v : triangle.corners) {

@@ -15,7 +15,7 @@ using SagLimit = std::function<double(Index)>;
 /// Returns the distance between a curve and its chord from one parameter to another, relative to the limit.
 double sag_between(const Plc& plc, const CurvePaths& paths, const SagLimit& limit, Index curve, double from,
                    double to);
-/// Returns this distance relative to the tolerance.
+/// Returns the distance between a curve and its chord, relative to the tolerance.
 double sag_between(const Plc& plc, const CurvePaths& paths, const SurfaceTolerance& tolerance, Index curve,
                    double from, double to);
 

@@ -84,9 +84,9 @@ SharpCorners::Corner SharpCorners::find(const SurfaceComplex& complex, Index ver
   return corner;
 }
 
-/// Returns the largest length of tips that the sizes permit and that leaves no much shorter edge behind a
-/// tip. The chords of tips may cross no other chords except those of the curves in the same corner, because a
-/// triangle closes the corner.
+/// Returns the largest length of tips that the sizes permit. It must not leave an edge behind a tip that is
+/// much shorter than the tip. The chords of tips may cross no other chords except those of the curves in the
+/// same corner, because a triangle closes the corner.
 double SharpCorners::tip_length(const Plc& plc, const CurvePaths& paths, const SurfaceSizes& sizes,
                                 const ChordLimits& limits, const Corner& corner) const {
   constexpr unsigned most_steps = 40;

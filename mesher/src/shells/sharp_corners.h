@@ -18,7 +18,7 @@ class SharpCorners {
   SharpCorners(const SurfaceComplex& complex, const Plc& plc, const CurvePaths& paths,
                const SurfaceSizes& sizes, const ChordLimits& limits);
 
-  /// Returns the lengths of the first and of the last edge of a curve; 0 if that end is not at a sharp
+  /// Returns the lengths of the first and of the last edge of a curve; 0 for an end that is not at a sharp
   /// corner.
   const std::array<double, 2>& tips(Index curve) const { return tips_[curve]; }
   /// Marks the edges that are tips.

@@ -35,8 +35,8 @@ class SurfaceComplex {
     Index curve = none;
     std::array<double, 2> at{};  ///< arc lengths of the ends on the curve, ascending; the second one may
                                  ///< exceed the curve's length
-    Index tip = none;            ///< its end at a sharp corner, else none; all edges that begin there are
-                                 ///< equally long
+    Index tip = none;            ///< if the edge is a tip, its end at a sharp corner, else none; all tips at
+                                 ///< that corner are equally long
 
     bool alive() const { return ends[0] != none; }
     /// Return the other end, and the arc length of an end. Precondition: v is an end.

@@ -56,7 +56,7 @@ class SurfaceEditor {
   std::optional<Filling> filling_without(Index vertex, const Removal& rule) const;
   /// Removes a vertex. `filling`: what filling_without returned for it; nothing has changed since then.
   void remove(Index vertex, const Filling& filling) { replace_vertex(vertex, filling.triangles); }
-  /// A vertex before its removal, with what surrounds it.
+  /// The state of a vertex and its neighbours before the vertex is removed.
   struct Surroundings {
     Index vertex = none;
     std::vector<SurfaceComplex::Triangle> triangles;

@@ -10,7 +10,7 @@
 namespace collarmesh::shells {
 
 /// Target edge lengths on curves and patches. They grow by at most the gradation per unit of distance, away
-/// from places with small lengths and from curves that are shorter than the lengths.
+/// from places with small target lengths and from curves that are shorter than their target length.
 class SurfaceSizes {
  public:
   /// Keeps references to all arguments.

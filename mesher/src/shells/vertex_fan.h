@@ -58,7 +58,7 @@ class VertexFan {
       if ((least = std::min(least, shape_of({p, a, b}))) < bound) break;
     return least;
   }
-  /// Returns the least shape as above, but 0 if a triangle would be turned over.
+  /// Returns the same as `least_shape`, but 0 if a triangle would be turned over.
   double least_turned_shape(const Point& p, double bound) const {
     for (const auto& [a, b] : sides_)
       if (!(dot(cross(a - p, b - p), normal_) > 0)) return 0;

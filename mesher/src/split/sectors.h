@@ -20,8 +20,8 @@ struct NodeOfTet {
 
 /// Divides the tets at each node into sectors: tets that share a side at the node are in one sector unless
 /// the side is split. For each sector but the first, in the order of regions and tets, calls `copy(node,
-/// members)`. Groups of tets that had no common side at the node even before the split still share the node
-/// in their first sectors. Cost: n log n.
+/// members)`. If the tets at a node form groups without common sides even before the split, the first sector
+/// of each group keeps the node. Cost: n log n.
 void for_each_further_sector(const TetMesh& mesh, std::vector<NodeOfTet> nodes,
                              const std::function<bool(const Key&)>& is_split,
                              const std::function<void(Index, const std::vector<NodeOfTet>&)>& copy);

@@ -99,10 +99,10 @@ class ParallelMesh {
   ParallelMesh(const ParallelMesh&) = delete;
   ParallelMesh& operator=(const ParallelMesh&) = delete;
 
-  /// Cuts every tet into eight by Bey's rule, the first time at the diagonal that makes the best angles, and
-  /// moves the vertices on features onto the shape. If that spoils tets, vertices inside regions and on
-  /// planar or straight features move to make room; if that does not help, vertices on smooth or exact
-  /// features move back. Precondition: first order.
+  /// Cuts every tet into eight by Bey's rule; in the first refinement, along the inner diagonal that makes
+  /// the best angles. Moves the vertices on features onto the shape. If that spoils tets, vertices inside
+  /// regions and on planar or straight features move to make room; if that does not help, vertices on smooth
+  /// or exact features move back. Precondition: first order.
   LevelReport refine(const Shape& shape);
 
   /// Adds a mid-edge node to every edge, on the shape if the edge is on a feature, so that every tet is valid

@@ -9,7 +9,7 @@
 namespace collarmesh::io {
 
 /// Reads a size field: .json (a description, see `size_field_from_json`), or .vtu or .msh (a mesh with a
-/// scalar field of target edge lengths on its points). The field records in `use`, which it keeps, the sizes
+/// scalar field of target edge lengths on its points). The field keeps `use`, and records in it the sizes
 /// that each source asks for. Throws ReadError or OptionError.
 SizeField read_size_field(const std::string& path, const Plc& plc,
                           const std::shared_ptr<SizeFieldUse>& use = nullptr);

@@ -8,11 +8,11 @@
 
 namespace collarmesh::io {
 
-/// Reads a surface or PLC file by its extension (any case): .off .obj .stl .ply .poly .smesh, or as
-/// `format` (one of those, lower case) says. Coordinates are doubles. Throws ReadError (path, line or
-/// byte) for a file that is missing, malformed, truncated or whose counts exceed what its size can hold.
-/// .poly and .smesh: the attribute of a region is its tag. Its volume constraint v becomes its target size:
-/// the edge length of the regular tetrahedron of volume v, (6 sqrt 2 v)^(1/3).
+/// Reads a surface or PLC file by its extension (any case): .off .obj .stl .ply .poly .smesh, or as `format`
+/// (one of those, lower case) says. Coordinates are doubles. Throws ReadError (path, line or byte) for a file
+/// that is missing, malformed or truncated, and for counts that are too large for the file's size. .poly and
+/// .smesh: the attribute of a region is its tag. Its volume constraint v becomes its target size: the edge
+/// length of the regular tetrahedron of volume v, (6 sqrt 2 v)^(1/3).
 PolygonSoup read_soup(const std::string& path, std::string_view format = {});
 
 /// Writes a surface or PLC by the extension or format. Only .poly holds facets of several polygons or with

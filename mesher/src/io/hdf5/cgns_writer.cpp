@@ -1,7 +1,7 @@
 // CGNS (cgns.github.io, "SIDS-to-HDF5 File Mapping Manual") in HDF5: one unstructured zone. Each region, each
-// tag of patches and each tag of curves has a section of elements for each kind of cells, named after it.
-// Faces of a section that lie on the boundary also form a boundary condition. Its family has the name of the
-// group's first section.
+// tag of patches and each tag of curves is a group. It has a section of elements, with its name, for each
+// kind of its cells. Faces of a section that lie on the boundary also form a boundary condition, whose family
+// has the name of the group's first section.
 #include <fmt/format.h>
 #include <hdf5.h>
 
@@ -138,8 +138,8 @@ std::size_t sort_outside_first(const TetMesh& mesh, CellKind kind, std::vector<I
   return static_cast<std::size_t>(inside - faces.begin());
 }
 
-/// Puts the sections of each group into the family of the first of them. Sections of a group follow each
-/// other and have the same name there (`family`).
+/// Puts the sections of each group into the family of the group's first section. Precondition: the sections
+/// of a group follow each other, and the `family` of each is the group's name.
 void name_families(std::vector<Section>& sections) {
   std::string group;
   for (std::size_t i = 0; i < sections.size(); ++i) {

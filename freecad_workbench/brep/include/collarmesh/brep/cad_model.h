@@ -100,9 +100,9 @@ class CadModel {
   virtual const std::string& open_edges_text() const;
 
   /// Returns the point of EdgeN (dimension 1), or of the surface of FaceN (dimension 2), that is nearest to
-  /// `p`. The point `p` must not be much farther from it than the tessellation is. Returns nothing if there
-  /// is no such sub-shape or OpenCASCADE finds no point. Precondition: tessellated. Cost: constant for simple
-  /// surfaces, logarithmic in the face's triangles for others.
+  /// `p`. The point `p` must not be much farther from the edge or face than the tessellation is. Returns
+  /// nothing if there is no such sub-shape or OpenCASCADE finds no point. Precondition: tessellated. Cost:
+  /// constant for simple surfaces, logarithmic in the face's triangles for others.
   virtual std::optional<Point> nearest(unsigned dimension, Tag number, const Point& p) const;
 
   /// Returns the faces nearest to a place, as "Face3 and Face7". Precondition: tessellated.
