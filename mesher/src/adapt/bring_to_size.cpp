@@ -33,8 +33,8 @@ constexpr double longest = coarsening::CoarseningRule::longest_new;
 constexpr double less_by_seed = 0.03;
 constexpr unsigned seeds = 4;
 
-// An edge beside a short edge may be `of_shortest` times as long; from there edges may grow by `growth` per
-// unit of distance.
+// An edge beside a short edge may be `of_shortest` times as long as the short one; from there edges may grow
+// by `growth` per unit of distance.
 constexpr double of_shortest = 1.5, growth = 1;
 
 // Graded sizes are used only if they take at most `most_times` as many tets as the targets, plus `some`. The
