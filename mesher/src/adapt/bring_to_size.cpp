@@ -36,8 +36,8 @@ constexpr double far_too_long = 2.5, most_of_long = 0.01;
 // repeat.
 constexpr double less_by_seed = 0.03;
 
-// An edge beside a short edge may be `of_shortest` times as long; from there edges may grow by `growth` per
-// unit of distance.
+// An edge beside a short edge may be `of_shortest` times as long as the short one; from there edges may grow
+// by `growth` per unit of distance.
 constexpr double of_shortest = 1.5, growth = 1;
 
 // Graded sizes are used only if they take at most `most_times` as many tets as the targets, plus `some`. The

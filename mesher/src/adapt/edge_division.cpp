@@ -24,7 +24,8 @@ constexpr std::size_t edges_between_reports = 4096;
 // Crossing edges are divided only if they cross in their middle part. An edge on a curve can only be divided
 // in its middle, so its middle part is smaller.
 constexpr double middle_part = 0.4, middle_part_of_curve = 0.1;  // from the middle, relative to the edge
-// Number of trials before the first division that helps, and its increase with each such division.
+// Limit of trials before the first division that helps, and the increase of this limit with each such
+// division.
 constexpr std::size_t first_trials = 60, trials_per_division = 8;
 constexpr unsigned most_steps = 20;  // improvement steps in a trial
 

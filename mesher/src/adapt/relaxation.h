@@ -47,8 +47,8 @@ class Relaxation {
   static constexpr unsigned kinds_of_means = 3;
   struct Proposal {
     Change change;  ///< may be none
-    /// The change depends on the tets at these vertices. Empty: the tet had changed or was gone. Its index
-    /// may be in use again, so a change is proposed again.
+    /// The change depends on the tets at these vertices. Empty: the tet had changed or was gone. The tet's
+    /// index may be in use again, so a change is proposed again.
     std::vector<Index> read;
   };
   struct Neighbours {

@@ -126,7 +126,7 @@ class Remeshing {
     choose_bounds();
   }
 
-  /// Makes the features of the given complex those of the mesh, in place of those of the mesh's own surface.
+  /// Gives the mesh the features of the given complex, in place of the features found on its own surface.
   void follow_complex() {
     TetMesh listed =
         corners_of(given_).mesh;  // folds and borders between faces need not be curves of the complex

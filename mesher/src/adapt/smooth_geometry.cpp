@@ -262,8 +262,8 @@ void SmoothPatch::find_normals() {
 }
 
 /// Returns the normal at a point of a smooth curve at the border. All triangles there are on one side of the
-/// curve, so their mean normal belongs to a place farther inside. Extrapolates the normal at the curve,
-/// across the curve, from this mean and the mean normal of the neighbours inside.
+/// curve, so their mean normal belongs to a place farther inside. So the normal at the curve is extrapolated,
+/// in the direction across the curve, from this mean and the mean normal of the neighbours inside.
 Vector SmoothPatch::border_normal(Index vertex, const CellsAtVertices& at) const {
   const Vector mean = unit(across(normals_[vertex], tangents_[vertex]));
   const Vector inwards = cross(mean, tangents_[vertex]);

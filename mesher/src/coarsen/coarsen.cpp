@@ -31,8 +31,8 @@ namespace {
 using Mode = CoarseningRule::Mode;
 
 constexpr unsigned plain_passes = 4, repair_passes = 6, rounds = 12;
-// Most repair steps per collapse. A step rarely fixes two tets, so repair gives up when more tets are poor
-// than steps remain.
+// Largest number of repair steps per collapse. A step rarely fixes two tets, so repair gives up when more
+// tets are poor than steps remain.
 constexpr unsigned most_repairs = 24;
 // Vertices whose shortest edge is below this share of its target length get collapses with repairs, most of
 // which fail.
@@ -431,7 +431,7 @@ class Coarsening {
     return all;
   }
 
-  // Returns the smallest corner that has changed since this time.
+  // Returns the smallest index of a corner that has changed since this time; none if no corner has.
   Index first_changed(Index tet, std::uint32_t since) const {
     Index first = none;
     for (const Index v : complex()[tet].corners)

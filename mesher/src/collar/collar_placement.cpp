@@ -33,7 +33,7 @@ constexpr double sample_step = 0.5;  // distance of samples, in radii
 // lines from a point of the two balls' circle to their centres meet at an angle of at most 90 degrees.
 constexpr double step_per_radius = 1.2;
 // Mesh vertices nearer than this, in radii, to the previous centre or to the last one do not become centres.
-// Equal steps whose sum exceeds 1.2 radii are not shorter either.
+// Where a longer way than `step_per_radius` is divided into equal steps, these are at least as long, too.
 constexpr double least_step_per_radius = step_per_radius / 2;
 
 // Lowers values until none exceeds a neighbour's by more than the slope allows, in both directions; goes
@@ -145,7 +145,8 @@ CollarPlacement::Profile CollarPlacement::make_profile(Index curve, double from,
     if (s >= to) break;
     require_room(flat.back(), paths_.point(curve, s));
     s = std::min(to, s + sample_step * flat.back());
-    // There are two samples per radius, and balls are 1.2 radii apart: fewer than three samples per ball.
+    // There are two samples per radius, and balls are 1.2 radii apart, so there are fewer than three samples
+    // per ball.
     if (stopped(profile.parameters.size() / 3)) return {};
   }
   limit_slope(profile.parameters, radius_slope, closed, profile.radii);

@@ -8,7 +8,7 @@
 
 namespace collarmesh {
 
-/// A side of a patch at a crease: the unit direction in which it leaves the crease.
+/// A side of a patch at a crease, with the unit direction in which the patch leads away from the crease.
 struct Sheet {
   Index patch;
   Vector direction;

@@ -19,7 +19,8 @@ struct Feature {
 
 /// Bounding-volume hierarchy over the features of a complex. Below each feature is a hierarchy over its
 /// triangles, its segments or its point. A query that leaves out features, or that asks for one alone, never
-/// visits the elements of the others, so its cost is logarithmic however finely a feature is tessellated.
+/// visits elements of features that do not count, so its cost is logarithmic however finely a feature is
+/// tessellated.
 class FeatureHierarchy {
  public:
   /// Keeps references to both; `points` are the complex's, possibly in another frame.

@@ -24,7 +24,7 @@ constexpr double pieces_per_radius = 3;
 constexpr double detour = 1.5;
 // Positions along a chord at which it is compared with the feature.
 constexpr std::array<double, 3> chord_shares{0.25, 0.5, 0.75};
-constexpr std::size_t most_spokes = 16;  // most spokes that are compared with a patch in a ball
+constexpr std::size_t most_spokes = 16;  // most edges from the ball's centre that are compared with a patch
 constexpr double rounding = 1e-6;        // tolerance of lengths, relative to the ball's radius
 constexpr int most_steps = 60;
 
@@ -118,8 +118,9 @@ double Flatness::other_arcs(Index curve, double parameter, double reach) const {
   });
 }
 
-// Returns the distance, up to `reach`, to triangles of the patch that no triangles inside the ball B(centre,
-// reach) connect to the triangles with the given points (the same point twice at a vertex).
+// Returns the distance, up to `reach`, to other sheets of the patch: to triangles that are not connected, by
+// triangles inside the ball B(centre, reach), to those with the given points (at a vertex, the same point
+// twice).
 double Flatness::other_sheets(Index patch, const Point& centre, double reach,
                               const std::array<Index, 2>& points) const {
   struct Side {

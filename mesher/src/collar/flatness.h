@@ -10,7 +10,7 @@ namespace collarmesh {
 /// A limit on the radius of a ball at a crease, so that straight edges and flat triangles can replace the
 /// curved features inside it. Inside the ball the features deviate from their chords by no more than the
 /// distance tolerance; the ball meets its curve in one arc and each smooth patch in one piece; its radius is
-/// at most a third of the distance to their other pieces.
+/// at most a third of the distance to other pieces of these features.
 class Flatness {
  public:
   /// Keeps references to all arguments.

@@ -155,7 +155,7 @@ class Ladders {
         std::fabs(dot(pc - pa, across)) >
             crossing * std::min(may_move_(triangles_[first].origin), may_move_(triangles_[second].origin)))
       return false;
-    // Both ends of each diagonal are on opposite sides of the other diagonal.
+    // The two ends of each diagonal are on opposite sides of the other diagonal.
     const auto parts = [&](const Point& from, const Vector& along, const Point& p, const Point& q) {
       return dot(cross(along, p - from), across) * dot(cross(along, q - from), across) < 0;
     };

@@ -23,14 +23,15 @@ constexpr double share_around = 0.75;
 constexpr std::size_t fewest_in_ring = 8, most_in_ring = 24;
 // The smallest angle of tets, a little above the bound on thin tets, degrees.
 constexpr double least_angle = 8.2;
-// Shares of the tolerance that the measured distance of the patch from chords around a straight rod may
-// reach, and around a bent one.
+// Largest measured distance of the patch from chords around a straight rod, and around a bent one, as a share
+// of the tolerance.
 constexpr double share_measured = 0.95, share_measured_of_bent = 0.6;
 constexpr std::size_t rays_of_section = 16, most_sections = 200'000, fewest_rings_of_loop = 8;
 constexpr double step_in_radii = 1, rays_per_radius = 8;
 
 /// Returns the largest distance of rings with this many vertices, in radii. The smallest angle is that at an
-/// edge from the axis to a ring, between the planes through the axis and through the next vertex of the ring.
+/// edge from the axis to a ring, between the plane that contains the axis and the plane through the next
+/// vertex of the ring.
 double largest_spacing(std::size_t in_ring) {
   const double chord = 2 * std::sin(std::numbers::pi / static_cast<double>(in_ring)),
                slope = std::tan(least_angle * std::numbers::pi / 180) / chord, rest = slope * slope - 0.25;
@@ -89,7 +90,7 @@ TetMesh::VertexFeature Rod::feature_of(std::size_t ring, const Point& point) con
     if (plc_.points[plc_.vertices[v].point] == point) return {0, v};
   return {1, end.curve};
 }
-/// Returns whether the rings at the ends contain the vertices there.
+/// Returns whether the rings at the ends contain the complex's vertices there.
 bool Rod::have_vertices() const {
   for (std::size_t end = 0; end < ends_.size(); ++end)
     for (const Index v : plc_.patches[ends_[end].patch].vertices)

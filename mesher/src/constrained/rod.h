@@ -50,8 +50,8 @@ class Rod {
   /// Changes the number of vertices in a ring. Returns whether it is not too large.
   bool set_in_ring(std::size_t vertices);
   /// Finds how far apart rings are, after `find_vertices_around`: at most this many radii, and so near that
-  /// edges along a bent axis take at most this share of the tolerance. The number of distances is a multiple
-  /// of `times`.
+  /// edges along a bent axis take at most this share of the tolerance. The number of steps from ring to ring
+  /// is a multiple of `times`.
   void find_spacing(double most_radii = INFINITY, double share_along = 0.1, std::size_t times = 1);
   /// Finds the vertices of all rings. If a pattern around the rod looks the same after each of
   /// `parts_of_turn` parts of a turn, the rings of a closed rod are turned so that the pattern fits where the
@@ -81,13 +81,14 @@ class Rod {
   double largest_bend() const;
 
   std::size_t in_ring() const { return in_ring_; }
-  /// Returns the number of distances between rings.
+  /// Returns the number of steps from ring to ring.
   std::size_t steps() const { return steps_; }
   /// Returns the rings' vertices; a closed rod does not repeat the first ring.
   const std::vector<std::vector<Point>>& rings() const { return rings_; }
   /// Returns the points on the axis in the middle between neighbouring rings.
   const std::vector<Point>& axis() const { return axis_; }
-  /// Returns the number of parts of a turn by which the first ring lags behind the ring after the last one.
+  /// Returns by how many parts of a turn the first ring of a closed rod lags behind the ring that would
+  /// follow the last one.
   std::size_t shift() const { return shift_; }
   /// Returns the section at a share of the rings (0: the first ring, 1: the last one). Turns its frame so
   /// that a ring there has its first vertex in the direction `across`.
@@ -134,7 +135,7 @@ class Rod {
   std::unique_ptr<TriangleHierarchy> hierarchy_;
   mutable std::vector<TriangleHierarchy::Crossing> crossings_;
   std::vector<RodSection> sections_;
-  Vector aim_;  // direction of the vertex at the second end
+  Vector aim_;  // direction from the axis to the complex's vertex at the second end
   std::size_t in_ring_ = 0, steps_ = 0, shift_ = 0, parts_of_turn_ = 1;
   double turn_ = 0;  // the angle by which frames are turned over the whole length
   std::vector<std::vector<Point>> rings_;

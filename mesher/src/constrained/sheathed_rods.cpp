@@ -69,8 +69,8 @@ class SheathFilling {
     mesh_.tet_thin.assign(mesh_.tets.size(), 0);
   }
 
-  /// Returns the number of parts of a turn after each of which the layers look the same. In the outermost
-  /// layer only every second vertex is alike.
+  /// Returns into how many equal parts a turn is divided such that the layers look the same after each part.
+  /// In the outermost layer only every second vertex has the same place along the rod.
   static std::size_t parts_of_turn(std::size_t in_ring) {
     std::size_t parts = in_ring;
     for (const Layer& layer : layers_around(in_ring)) parts = std::gcd(parts, layer.count);
@@ -100,7 +100,7 @@ class SheathFilling {
   Index at(std::size_t layer, std::size_t level, std::size_t k) const {
     const std::size_t n = count(layer);
     if (is_loop()) {
-      // The first ring lags behind the one after the last ring by some parts of a turn.
+      // The first ring lags behind the ring that would follow the last one by some parts of a turn.
       const std::size_t lag = rod_.shift() * (n / std::gcd(n, parts_of_turn(rod_.in_ring()))) % n,
                         first = is_between_rings(layer) ? 1 : 0, all = levels(layer) * steps_;
       if (level < first) level += all, k += lag;

@@ -159,8 +159,8 @@ class LayerCurving {
     note_patches(layers.quad_mid_nodes, layers.quad_patch);
   }
 
-  /// Finds the wall edges of the core between two nodes without layers. The core left them straight below
-  /// triangles of the front; at other edges it may have placed the nodes differently than before.
+  /// Finds the wall edges of the core between two nodes without layers. `curve_core` left them straight below
+  /// triangles of the front; elsewhere it may have moved their nodes.
   void find_wall_nodes_of_core() {
     for (std::size_t f = 0; f < mesh_.faces.size(); ++f)
       for (unsigned k = 0; k < 3; ++k) {
@@ -313,7 +313,7 @@ class LayerCurving {
   std::vector<Edge> ends_;                          // by node of layers: its edge
   struct WallNode {
     Index node, a, b;  // the node, and the ends of its edge
-    bool is_new;       // the core has the node on no feature
+    bool is_new;       // `curve_core` put the node on no feature
   };
   std::vector<WallNode> wall_nodes_;  // nodes on walls that belong to the core
   std::vector<Index> tets_at_wall_;   // tets of the core with such nodes

@@ -33,7 +33,7 @@ void straighten(TetMesh& mesh);
 /// The places of the points of a mesh with layers: the point of the wall below, and the height relative to
 /// all layers there.
 struct PlacesInLayers {
-  std::vector<Index> wall;      ///< the point of the wall below; itself on walls; none elsewhere
+  std::vector<Index> wall;      ///< by point: the point of the wall below it or at it; none elsewhere
   std::vector<Index> given;     ///< the same point by its number in the mesh without layers
   std::vector<double> share;    ///< from 0 on walls to 1 beside the core
   std::vector<bool> is_raised;  ///< by point of a wall: whether there are layers above it

@@ -45,7 +45,8 @@ class Heights {
   }
   /// Lowers a node's distance to `to`.
   void lower(Index node, double to, Cause cause);
-  /// Lowers distances in gaps: the stacks on both sides leave a part of each gap to the tets between.
+  /// Lowers distances in gaps, so that the layers on both sides leave a part of each gap to the tets between
+  /// them.
   void fit_gaps();
   /// Lowers distances where nodes would leave curved patches on which they slide.
   void fit_patches(const remeshing::SmoothSurfaces& surfaces, const SurfaceTolerance& tolerance);

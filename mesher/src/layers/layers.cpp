@@ -24,8 +24,8 @@ namespace {
 // There are at most this many tries. Each lowers layers, or leaves them out, where the last one failed. After
 // `last_levels` tries, layers are also left out in ever wider rings around these places.
 constexpr unsigned most_tries = 9, last_levels = 4;
-// If a node fails even at the level `Core::strictest`, the next try takes this share of its height, the one
-// after it no layers.
+// If a node fails even at the level `Core::strictest`, its height is multiplied by this share in the next
+// try. If it fails again, it gets no layers.
 constexpr double further_share = 0.25;
 // Number of times that layers are left out where curved cells fold, in ever wider rings. After that, edges of
 // walls get straighter.

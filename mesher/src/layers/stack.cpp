@@ -184,8 +184,8 @@ void Stack::add_pyramid(const std::array<Index, 5>& corners, bool from_first, co
   add_tet(from_first ? std::array{a, apex, c, d} : std::array{b, d, apex, c}, side, layer);
 }
 
-/// Divides a prism into tets. The diagonal of each side begins at its lower corner above the smaller node of
-/// the wall.
+/// Divides a prism into tets. The diagonal of each side begins at its lower corner above the wall's node with
+/// the smaller number.
 void Stack::divide_prism(const WallSide& side, unsigned layer) {
   std::array<unsigned, 3> order{0, 1, 2};
   std::sort(order.begin(), order.end(),

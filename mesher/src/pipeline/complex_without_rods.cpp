@@ -47,7 +47,7 @@ class Removal {
       vertices_[v] = std::ranges::any_of(whole.vertices[v].curves, [&](Index c) { return curves_[c]; });
   }
 
-  /// Returns whether all vertices on dropped curves are on these alone.
+  /// Returns whether the vertices to drop lie on no curve that is kept.
   bool is_possible() const {
     for (Index v = 0; v < vertices_.size(); ++v)
       if (vertices_[v] &&

@@ -13,7 +13,7 @@ namespace collarmesh::pipeline {
 /// Features are numbered anew.
 struct ComplexWithoutRods {
   Plc plc;
-  /// By feature of this complex: the feature of the whole one; none for the vertices on axes.
+  /// By feature of this complex: the same feature of the whole complex; none for the vertices on axes.
   std::vector<Index> vertex_of, curve_of, patch_of, region_of;
   std::vector<Index> triangle_of;  ///< by triangle, likewise
 

@@ -33,7 +33,7 @@ void tetrahedralize(MeshJob& job);
 void settle(MeshJob& job, Hope hope);
 
 /// Mends flat tets of a refined and coarsened mesh that miss their bounds, by dividing edges so that vertices
-/// face each other. Keeps the result if fewer tets miss their bounds then.
+/// on the two sides of a tet face each other. Keeps the result if fewer tets miss their bounds then.
 void mend_flat_tets(MeshJob& job);
 
 }  // namespace collarmesh::pipeline

@@ -178,8 +178,8 @@ bool MeshMaker::is_good_with_sheaths(std::vector<SheathedRod>& rods) {
   return false;
 }
 
-/// Returns whether a refinement probably makes many times the elements that are needed. The same is returned
-/// for cylinders that nearly touch, which need few elements, so `refines_with_few_vertices` decides.
+/// Returns whether a refinement probably makes many times the elements that are needed. Returns true also for
+/// cylinders that nearly touch, which need few elements, so `refines_with_few_vertices` decides afterwards.
 bool MeshMaker::may_be_better_constrained() const {
   if (job_.start != Start::automatic || !may_start_constrained(job_.given) ||
       !may_take_constrained(*job_.plc))

@@ -25,8 +25,7 @@ class MeshMaker {
 
   /// Forgets everything about the previous complex.
   void take_new_complex();
-  /// Sets the complex of the kept mesh: the one that the source built last, which has moved to this place
-  /// since.
+  /// Tells the job that the complex that the source built last is now at the address of `plc`.
   void move_to(const Plc& plc);
 
   /// Takes a complex through all stages. Throws Ended, PlcError and, with Fineness::as_asked, FarTooFine.

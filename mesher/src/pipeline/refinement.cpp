@@ -17,8 +17,8 @@ namespace collarmesh::pipeline {
 namespace {
 
 // Factors and reserve for runs with exact geometry: the bounds must still hold after the vertices have moved
-// onto it. The factor on the distance leaves room for twice the distance of CAD triangles from the shape (a
-// tenth of the tolerance) and some more.
+// onto it. The factor on the distance leaves room for twice the distance of CAD triangles from the shape,
+// which is a tenth of the tolerance, and some more.
 constexpr double distance_left = 0.75, ratio_left = 0.99, angle_reserve = 0.05;
 
 // Layers are pushed into the tets, which makes angles worse where walls are one tet apart.
@@ -69,8 +69,8 @@ class VertexCounter {
 
   // Returns whether a refinement that has reached this number of vertices must end with too many. The moments
   // of progress reports depend on the clock, so this must be false throughout a refinement that does not
-  // exceed the limit at its end. While it bounds narrow cells, such a refinement may have twice that limit
-  // plus `some_more` vertices; if it begins again, it drops them.
+  // exceed the limit at its end. While such a refinement bounds narrow cells, it may have up to twice the
+  // limit plus `some_more` vertices, which it drops if it begins again.
   bool will_exceed(std::size_t vertices) {
     constexpr std::size_t some_more = 5000;
     return fineness_ == Fineness::as_asked && vertices > few + some_more &&

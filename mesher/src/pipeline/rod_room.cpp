@@ -83,8 +83,8 @@ class OtherFeatures {
   std::vector<Index> common_owner_;  // by node: the owner of all pieces below it, or none
 };
 
-/// Returns whether other features are far enough from a rod. The patches at its ends may be near the axis
-/// only where it leaves them.
+/// Returns whether other features are far enough from a rod. The patches at the rod's ends may be near the
+/// axis only where the axis leaves them.
 bool is_clear(const OtherFeatures& others, const SheathedRod& rod, Index number) {
   constexpr double steepest = 0.9;  // least increase of the distance from a host along the axis
   const double bound = clearance * rod.reach;

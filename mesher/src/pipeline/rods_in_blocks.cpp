@@ -128,7 +128,7 @@ class Assembly {
     append(made_.edge_tag, of.edge_tag);
   }
 
-  /// Adds what fills a gap around a rod whose first vertex is given.
+  /// Adds the elements that fill the gap around a rod. `first_of_rod`: number of the rod's first vertex.
   void add_gap(const RodFilling& filling, Index first_of_rod) {
     const TetMesh& gap = filling.gap;
     std::vector<Index> number;
@@ -240,7 +240,8 @@ bool insert_rods(const Plc& plc, const ComplexWithoutRods& without, std::vector<
 /// them, get about the size of the sheaths, so that cavities touch no other features.
 void refine_without(MeshJob& job, const ComplexWithoutRods& without, const std::vector<SheathedRod>& rods,
                     Fineness fineness) {
-  // In terms of the sheath's reach: the size there, and the distance from the axis up to which it holds.
+  // In terms of the sheath's reach: the size of these tets, and the distance from the axis up to which tets
+  // get this size.
   constexpr double size_beside = 1.5, as_far_as = 2.2;
   const RodAxes axes(rods);
   const Plc* const whole = job.plc;

@@ -95,7 +95,7 @@ void Tries::mesh(const Plc& plc) {
 void Tries::mesh_repaired(SoupPipelineResult& all) {
   mesh_any_repaired(all);
   keep_volumes(all.plc);
-  maker_.move_to(all.plc);  // later stages and the options need it
+  maker_.move_to(all.plc);  // later stages and the options refer to this object
 }
 
 void Tries::mesh_any_repaired(SoupPipelineResult& all) {

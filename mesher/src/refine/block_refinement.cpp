@@ -252,8 +252,8 @@ std::vector<Index> BlockRefinement::room_for(
   return room;
 }
 
-// Returns the number of records that each block may need. A vertex on the surface makes two triangles more
-// than it destroys; other vertices make hardly any.
+// Returns the number of records of restricted triangles that each block may need. A vertex on the surface
+// makes two triangles more than it destroys; other vertices make hardly any.
 std::vector<std::size_t> BlockRefinement::records_for(std::span<const Index> room) const {
   constexpr std::size_t of_a_zone = 512, insertions_per_record = 4;
   std::vector<std::size_t> records;

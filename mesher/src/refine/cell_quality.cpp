@@ -107,8 +107,8 @@ void CellQuality::cells_made(const ConflictZone& zone, Index vertex) {
   for (const Index cell : zone.created) judge(cell, queue_, leaves_narrow_cells);
 }
 
-// Tests the paper's stronger quality measure (section 1.2): a circumradius against the shortest edge at a
-// vertex.
+// Tests the paper's stronger quality measure (section 1.2), which compares the circumradius of a cell with
+// the shortest edge at each of its vertices.
 bool CellQuality::uneven_at_vertex(Index cell) const {
   if (domain_.options.vertex_ratio == 0) return false;
   const auto& v = mesh_.corners(cell);

@@ -11,11 +11,11 @@
 namespace collarmesh {
 
 /// The marks of cells inside the collars, and of vertices near them.
-/// Invariants: a cell is inside if its circumcentre lies in a ball, or if it was taken in; a vertex v is near
-/// if B(v, R_v), which contains the circumcentres of its cells, meets a ball. A vertex may be marked as near
-/// although it no longer is, because cells become smaller; no mark is missing. Refinement ignores cells
-/// inside, so all parts query this class. The loop reports insertions, CollarCreator reports new balls, and
-/// CollarReview takes cells in.
+/// Invariants: a cell is inside if its circumcentre lies in a collar ball, or if `take_in` added it; a vertex
+/// v is near if the smallest ball around v that contains the circumcentres of its cells meets a collar ball.
+/// A vertex may be marked as near although it no longer is, because cells become smaller; no mark is missing.
+/// Refinement ignores cells inside, so all parts query this class. The loop reports insertions, CollarCreator
+/// reports new balls, and CollarReview takes cells in.
 class CollarCells {
  public:
   /// Keeps both by reference. Without balls all functions are cheap.

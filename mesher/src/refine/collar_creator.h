@@ -102,12 +102,12 @@ class CollarCreator {
   CurveChains& curves_;
   OpenCreases& open_creases_;
   std::function<bool(std::size_t)> stopped_;
-  std::unique_ptr<GapExplorer> gap_;                 // created on first use
-  std::unique_ptr<CollarPlacement> placement_;       // set only if collars are created in the pass
-  std::unordered_map<Index, std::size_t> isolated_;  // by curve: the number of links at the start of its
-                                                     // chain that are isolated
-  std::vector<Index> ball_points_;                   // unresolved points at the balls' centres
-  std::vector<BallReason> reasons_;                  // reasons of the balls
+  std::unique_ptr<GapExplorer> gap_;            // created on first use
+  std::unique_ptr<CollarPlacement> placement_;  // set only if collars are created in the pass
+  // By curve: how many links, from the start of its chain, are known to be isolated.
+  std::unordered_map<Index, std::size_t> isolated_;
+  std::vector<Index> ball_points_;   // unresolved points at the balls' centres
+  std::vector<BallReason> reasons_;  // reasons of the balls
   std::size_t corners_taken_up_ = 0;
   std::function<void(const CollarBall&)> observer_;
   std::vector<Index> scratch_;

@@ -103,8 +103,9 @@ std::vector<Index> CollarReview::take_touched() {
   return cells;
 }
 
-// Adds flat cells to collars: corner points of neighbouring circles on neighbouring sheets are cocircular,
-// and may form a flat cell just outside the collar. Appends these cells to `cells`.
+// Adds flat cells just outside a collar to the collar. They arise where the spheres of consecutive balls meet
+// in circles: the points in which two neighbouring circles cross two neighbouring sheets of the surface lie
+// on one circle, so these four points may form a flat cell. Appends these cells to `cells`.
 void CollarReview::take_in_flat_cells(std::vector<Index>& cells) {
   std::vector<Index> candidates = cells;
   const auto add_neighbours = [&](Index cell) {
@@ -200,9 +201,10 @@ const CollarTriangle* CollarReview::known_triangle(FaceId face) const {
   return triangles_.find(outer, mesh_.generation(cell_of(outer)));
 }
 
-// Returns whether an edge is poor. It must have two triangles, of one ball or of consecutive balls. With one
-// ball, an edge between regions must not span two sheets. With two, the book tet between their centres must
-// not be inverted and must keep the angle bound.
+// Returns whether an edge is poor. It must have two triangles, of one ball or of consecutive balls. If they
+// are of one ball, an edge between two regions must not lead from one sheet of a patch to another. If they
+// are of two balls, the book tet on the edge and the two centres must not be inverted and must keep the angle
+// bound.
 bool CollarReview::poor_edge(const CollarTriangle& t, Index a, Index b) const {
   const CollarTriangle* neighbour = nullptr;
   std::size_t count = 0;
@@ -220,8 +222,8 @@ bool CollarReview::poor_edge(const CollarTriangle& t, Index a, Index b) const {
          collar_surface_.poor_book(t, *neighbour, {std::min(a, b), std::max(a, b)});
 }
 
-// Finds vertices of creases (usually centres of balls) that are vertices of cells outside: the sphere has no
-// points near them yet.
+// Finds vertices of creases (usually centres of balls) that are vertices of cells outside the collars: the
+// sphere around them has no mesh vertices near by yet.
 void CollarReview::find_exposed_vertices(const std::vector<Index>& cells) {
   for (const Index cell : cells) {
     if (surface_.region(cell) == 0 || cells_.inside(cell)) continue;
@@ -265,7 +267,8 @@ std::optional<Candidate> CollarReview::candidate(const WorkQueue::Item& item) {
                                                              : candidate_on_triangle(item.entry);
 }
 
-// Returns a point on the sphere, in the direction of the centre of a cell outside.
+// Returns a point on the sphere of the vertex's ball, in the direction of the circumcentre of a cell outside
+// the collars.
 std::optional<Candidate> CollarReview::candidate_at_vertex(Index vertex) {
   for (const Index outside : cells_outside(vertex))
     if (auto found = candidate_towards(outside, vertex)) {

@@ -30,8 +30,8 @@ class CollarSurface {
         creator_(creator) {}
 
   std::vector<CollarTriangle> triangles();
-  /// Returns the collar triangle of a face seen from a cell outside, if its dual edge meets the collar
-  /// surface.
+  /// Returns the collar triangle of a face seen from a cell outside the collars, if its dual edge meets the
+  /// collar surface.
   std::optional<CollarTriangle> triangle(FaceId outer);
   /// Returns whether the dual edge of a face is known to meet no ball.
   bool is_off(FaceId outer) const {

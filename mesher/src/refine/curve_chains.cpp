@@ -32,7 +32,7 @@ void CurveChains::start() {
 
 void CurveChains::add_chain(Index c) {
   if (collars_.is_crease_curve(c)) {
-    if (domain_.options.collar_creation != CollarCreation::in_pass) return;  // covered by balls of creases
+    if (domain_.options.collar_creation != CollarCreation::in_pass) return;  // its collar covers it
     open_creases_.open(c);
   }
   const std::vector<End> ends = first_ends(c);

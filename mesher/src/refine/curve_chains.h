@@ -70,8 +70,8 @@ class CurveChains {
   Index encroached(const ConflictZone& zone, const Candidate& candidate) const;
   /// Returns whether the centre of any ball lies in the Voronoi cell of this mesh vertex.
   bool any_at(Index mesh_vertex) const { return balls_.first_at(mesh_vertex) != none; }
-  /// Returns the unresolved end of a subsegment that is inserted instead of a candidate that encroaches the
-  /// subsegment: of the medial ends, the one nearer to the candidate. None if there is no such end.
+  /// Returns the end of a subsegment to insert instead of a candidate that encroaches the subsegment: of the
+  /// unresolved ends that are medial, the one nearer to the candidate. None if there is no such end.
   Index end_to_resolve(Index subsegment, const Candidate& candidate) const;
 
   /// Returns whether the subsegment of a queue entry still exists.

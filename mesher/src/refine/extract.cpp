@@ -206,8 +206,8 @@ class Extraction {
     permute(mesh_.face_tag, order);
   }
 
-  // Removes the patch from vertices that no face has. They lie in its plane, but may lie beside it: the
-  // middle of a triangle can be outside the patch.
+  // Removes the patch from the features of vertices that no face has. They lie in the plane of the patch, but
+  // they may be outside it, as the middle of a triangle can.
   void forget_features_off_the_surface() {
     std::vector<bool> on_surface(mesh_.points.size(), false);
     for (const auto& face : mesh_.faces)

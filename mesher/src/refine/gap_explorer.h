@@ -55,8 +55,9 @@ class GapExplorer final : public GapSize {
   struct Border {
     std::array<Index, 3> vertices{none, none, none}, curves{none, none, none};
   };
-  /// The corners of the element found last near a vertex or curve that its features do not contain, and the
-  /// mesh vertex in whose Voronoi cell it prevented isolation.
+  /// The last witness against the isolation of a vertex or curve: the corners of an element whose features do
+  /// not contain that vertex or curve, and the mesh vertex in whose Voronoi cell the element prevented
+  /// isolation.
   struct Witness {
     std::array<Index, 3> points{none, none, none};
     Index cell = none;

@@ -18,9 +18,9 @@ namespace collarmesh {
 /// kept at vertices, BlockRefinement must not run rounds with it, as with `has_field`.
 class Sizing {
  public:
-  /// Target edge length per unit of a size given as a length; in other meshers' meshes the median edge
-  /// exceeds the size by more than this. Sizes given as numbers of elements, across a gap or on a circle, are
-  /// used as they are.
+  /// Target edge length per unit of a size given as a length; in meshes of other meshers the median edge is
+  /// even longer in relation to the size. Sizes given as numbers of elements, across a gap or on a circle,
+  /// are used as they are.
   static constexpr double edge_per_size = 1.08;
   /// If the mesh will be coarsened, cells may exceed the radius-edge bound in gaps narrower than this share
   /// of the target edge length: in wider gaps the bound costs little, and improves angles.

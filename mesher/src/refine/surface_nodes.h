@@ -26,8 +26,8 @@ class SurfaceNodes {
   const TriangleHierarchy& hierarchy() const { return hierarchy_; }
   std::span<const Index> at(Index vertex) const { return {lists_[vertex].nodes, lists_[vertex].count}; }
   bool any_at(Index vertex) const { return lists_[vertex].count > 0; }
-  /// Returns the nodes of the vertex of a face that has the fewest nodes. They cover everything that the
-  /// face's dual edge meets.
+  /// Returns the nodes of that corner of a face which has the fewest. They cover everything that the face's
+  /// dual edge meets.
   std::span<const Index> fewest(FaceId face) const;
   /// Replaces `found` by the triangles that the dual edge of a face crosses, seen from the face's cell.
   void crossings_of_dual_edge(FaceId face, std::vector<TriangleHierarchy::Crossing>& found) const;

@@ -42,7 +42,7 @@ class UnresolvedPoints {
   const Unresolved& operator[](Index point) const { return points_[point]; }
   std::size_t size() const { return points_.size(); }
   bool resolved(Index point) const { return points_[point].vertex != none; }
-  /// Returns whether no point is left that is neither resolved nor withdrawn.
+  /// Returns whether every point is resolved or withdrawn.
   bool all_resolved() const {
     for (Index point = 0; point < size(); ++point)
       if (points_[point].object != none) return false;

@@ -33,18 +33,19 @@ class CreaseCells {
 /// Stands for a vertex that will be inserted on a patch, or on a curve of a patch.
 inline constexpr Index inserted_on_surface = none - 1;
 
-/// The bounds of a coarsened mesh that depend on the place: the largest dihedral angle of cells that touch a
-/// crease and, if only these cells and cells in narrow places may exceed the radius-edge bound, the narrow
+/// Bounds that differ from place to place in a coarsened mesh: the largest dihedral angle of cells that touch
+/// a crease and, if only these cells and cells in narrow places may exceed the radius-edge bound, the narrow
 /// places. Other rules contain the bounds of thin tets and the radius-edge bound itself.
 class CellBounds {
  public:
-  /// Factor on the quality of a tet that `allow` forbids, so that other tets in its place are better.
+  /// The quality of a tet that `allow` forbids is multiplied by this, so that any other tet in its place is
+  /// better.
   static constexpr double forbidden = 1e-3;
 
   /// Keeps the mesh by reference if each tet needs an interior node.
   CellBounds(const Plc& plc, const TetMesh& mesh, const Bounds& bounds);
 
-  /// Returns whether a tet may be made here. With default options all thin tets may be made.
+  /// Returns whether a tet with these corners may be made. With default options all thin tets may be made.
   bool allow(const Corners& p, const std::array<Index, 4>& corners) const {
     if (lacks_interior_node(corners)) return false;
     if (creases_.touch(corners)) return dihedral_cosines(p).largest_angle >= cosine_;

@@ -90,7 +90,8 @@ class CurveSlides {
   SurfaceTolerance tolerance_;
   CurvePaths paths_;
   mutable std::once_flag prepared_;
-  mutable std::vector<Place> places_;  // by vertex, for those that existed at the first use; computed then
+  // By vertex; computed at the first use, for the vertices that exist then.
+  mutable std::vector<Place> places_;
   std::vector<std::ptrdiff_t> spare_edges_;  // by curve: the number of edges above its minimum
   UndoLog<std::vector<Place>> old_places_{places_};
   UndoLog<std::vector<std::ptrdiff_t>> old_spare_edges_{spare_edges_};

@@ -83,10 +83,10 @@ void Operations::remove_edge(Index tet, unsigned i, unsigned j, Change& change,
   complex_.ring(tet, a, b, ring_);
   const std::size_t n = ring_.tets.size(), m = ring_.link.size();
   if (n > largest_ring || (ring_.closed && m < 3)) return;
-  // Finds the link vertices at which faces that must be preserved leave the edge.
+  // The mesh faces at the edge, which must be preserved, each with the place of its third corner in the link.
   std::vector<std::pair<std::size_t, Index>> kept;
-  // A quality above that of this tet is also above that of the worst tet at the edge, which need not be known
-  // then.
+  // If `change` is at least as good as this tet, it is at least as good as the worst tet at the edge, too;
+  // then that tet's quality need not be known.
   const bool known = anyhow_above || (!change.is_none() && change.quality >= quality(tet));
   double worst = known ? -INFINITY : INFINITY;
   for (std::size_t k = 0; k < n; ++k) {
@@ -149,8 +149,8 @@ void Operations::remove_edge(Index tet, unsigned i, unsigned j, Change& change,
     change.read = std::move(made.read);
 }
 
-// Returns whether this boundary sliver may be given to the region across its two faces at ab, which must have
-// tets.
+// Returns whether this boundary sliver may be given to the region across its two faces at ab. There must be
+// tets on the other side of these faces.
 bool Operations::may_lose(Index tet, Index a, Index b) const {
   const auto& t = complex_[tet];
   for (const Index v : t.corners)
@@ -164,8 +164,8 @@ bool Operations::may_lose(Index tet, Index a, Index b) const {
   return true;
 }
 
-// Returns whether two faces of a patch may be replaced by these, which share a new edge. They may not if the
-// mesh has faces at that edge already, because a face could then occur twice.
+// Returns whether two faces of a patch may be replaced by those that the change creates, which share a new
+// edge. Returns false if the mesh has faces at the new edge already, because a face could then occur twice.
 bool Operations::may_turn(Change& change) {
   const auto& turned = change.replacement.created_faces;
   std::array<Index, 2> shared{none, none};

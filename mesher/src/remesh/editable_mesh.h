@@ -55,7 +55,8 @@ class EditableMesh {
         forced(forced_edges_of(meant, mesh, lower_where_forced)),
         kept_(patches_to_keep(meant, mesh)) {}
 
-  /// Makes an editable mesh with the tolerance of these bounds; if they have none, with the one for any size.
+  /// Makes an editable mesh with the tolerance of these bounds; if they have none, with the tolerance for any
+  /// size.
   EditableMesh(TetMesh& mesh, const Plc& meant, const Bounds& bounds, double edges_per_hole = 0,
                const KnownNeighbours& neighbours = {})
       : EditableMesh(mesh, meant, tolerance_of_any_size(meant, bounds), edges_per_hole,
@@ -174,8 +175,8 @@ class Trial {
     for (const Index t : changed) note(t);
     return changed;
   }
-  /// Returns the tets of all changes that `apply` made, not of those made on the mesh directly; some have
-  /// been removed since.
+  /// Returns the tets of all changes made by `apply` of this trial, but not of changes made on the mesh
+  /// directly. Some of these tets have been removed since.
   const std::vector<Index>& changed() const { return changed_; }
 
   void keep() {

@@ -35,8 +35,8 @@ HullShapes::Two HullShapes::dot(const TwoVectors& a, const TwoVectors& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-// Returns the signed squared cosine of the largest angle of faces with these squared sides; 1 if none is
-// obtuse.
+// Returns the signed squared cosine of the largest angle of faces with these squared sides; 1 for a face
+// without an obtuse angle.
 HullShapes::Two HullShapes::least_cosine(const Two& x, const Two& y, const Two& z) {
   const Two least_xy = smaller(x, y), most_xy = larger(x, y);
   const Two longest = larger(most_xy, z), middle = larger(least_xy, smaller(most_xy, z)),

@@ -28,8 +28,8 @@ class Operations {
 
   /// Removes the edge between two corners of a tet by retriangulating its ring as well as possible. An edge
   /// inside a patch is removed together with its two triangles there; a sliver that has both triangles is
-  /// given to the region on the other side. `anyhow_above`: if set, the tets at the edge may be better now,
-  /// but all new tets must be better than this.
+  /// given to the region on the other side. `anyhow_above`: if set, the new tets may be worse than the old
+  /// ones, but all must be better than this value.
   void remove_edge(Index tet, unsigned i, unsigned j, Change& change,
                    std::optional<double> anyhow_above = {});
   /// Removes an edge of a tet: the one whose removal leaves the best tets.

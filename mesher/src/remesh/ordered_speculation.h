@@ -55,8 +55,9 @@ class OrderedSpeculation {
   }
 
  private:
-  // The number of items for which changes are proposed at once is limited in two ways: absolutely, and to one
-  // in `items_per_proposal` items, so that proposals rarely meet; but each thread gets several items.
+  // The number of items for which changes are proposed at once is at most `most`, and at most one in
+  // `items_per_proposal` of all items, so that proposals rarely concern the same tets; but each thread gets
+  // several items.
   static std::size_t proposals_at_once(std::size_t items) {
     constexpr std::size_t most = 256, items_per_proposal = 256, proposals_per_thread = 4;
     const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());

@@ -12,7 +12,7 @@ namespace {
 using Triangle = std::array<Index, 3>;
 using Tet = std::array<Index, 4>;
 
-// Rotates the triangle's corners so that the smallest one comes first; its orientation stays.
+// Rotates the triangle's corners so that the one with the smallest index comes first; its orientation stays.
 Triangle begun_with_smallest(Triangle t) {
   std::rotate(t.begin(), std::ranges::min_element(t), t.end());
   return t;

@@ -38,8 +38,8 @@ class SmoothSurfaces {
     Point point;
     Vector normal;  ///< normal of the patch's triangle there; of any length
   };
-  /// Returns the point of a smooth patch that is nearest to p. Searches the distance `near` first, which is
-  /// faster if the patch is that near.
+  /// Returns the point of a smooth patch that is nearest to p. Searches within the distance `near` first,
+  /// which is faster if the patch is that near.
   Nearest nearest(Index patch, const Point& p, double near = INFINITY) const;
   /// Accepts faces beyond the tolerance from now on, for meshes that were not made within it. The faces may
   /// be as far from the patch as the faces that they replace or, if the old faces are beyond the tolerance,
@@ -58,8 +58,8 @@ class SmoothSurfaces {
     Index patch;
   };
   /// Returns whether the created faces can replace the mesh's faces `old`: the created ones must agree with
-  /// the orientation of the patch at least as well. Faces on planar patches always fit. Computes the
-  /// agreement of the old faces if it is NaN, for callers that ask about the same faces again.
+  /// the orientation of the patch at least as well as the old ones. Faces on planar patches always fit.
+  /// Computes the agreement of the old faces if it is NaN, for callers that ask about the same faces again.
   bool fit(std::span<const Index> old, std::span<const Face> created, double& agreement_of_old) const;
   bool fit(std::span<const Index> old, std::span<const Face> created) const {
     double agreement_of_old = NAN;
@@ -119,7 +119,7 @@ class SmoothSurfaces {
   PatchPoints patch_points_;
   SurfaceTolerance tolerance_;
   mutable std::vector<Surface> surfaces_;
-  mutable std::vector<Index> first_sample_;   // by face: the first of its samples of its patch
+  mutable std::vector<Index> first_sample_;   // by face: the first of the patch's samples that it has
   std::vector<std::array<Index, 2>> moving_;  // patch and sample of points that no face has yet
   double accepted_ratio_ = 0;
   bool on_trial_ = false;

@@ -230,7 +230,7 @@ bool TetComplex::on_faces(Index a, Index b) const {
 }
 
 // Returns whether a tet and its neighbours agree: each is the other's neighbour across the same triangle,
-// they lie on the same face of the mesh or on none there, and the corners are in use.
+// both refer to the same face of the mesh there or to none, and the corners are in use.
 [[maybe_unused]] static bool consistent(const TetComplex& complex, Index t) {
   const TetComplex::Tet& tet = complex[t];
   for (unsigned corner = 0; corner < 4; ++corner) {

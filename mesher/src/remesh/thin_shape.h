@@ -139,7 +139,7 @@ inline ExtremeAngles extreme_angles(const Corners& p) {
 /// The bounds on the shape of thin tets: on dihedral angles from below and above, and on face angles from
 /// above, as tight as thin places permit. If features meet at less than twice the smallest angle, the lower
 /// bound is half the angle between them. If the input forces an edge of the tet to be short, the lower bound
-/// is half the angle that the edge leaves.
+/// is half the angle that this edge permits (ForcedEdges::smallest_angle).
 class ThinShape {
  public:
   static constexpr double largest_angle = largest_angle_of_thin_tets;
@@ -163,8 +163,9 @@ class ThinShape {
     return shape > obtuse_weight * sine_of_largest_ + rounding ? least_cosine_of_faces(p) < cosine_
                                                                : extreme_cosines(p).largest_angle < cosine_;
   }
-  /// The squared sines of the smallest angle and of 180 degrees minus the largest angle, relative to those of
-  /// their bounds: both are at least 1 if a tet is thin. Negative for a flat or an inverted tet.
+  /// The squared sines of the smallest angle and of 180 degrees minus the largest angle, each divided by the
+  /// squared sine of its bound: both are at least 1 if the tet keeps the bounds. Negative for a flat or an
+  /// inverted tet.
   struct SquaredMargins {
     double of_smallest, of_largest;
   };
@@ -235,8 +236,8 @@ class ThinShape {
   double forced_sine(const Corners& p, const std::array<Index, 4>& corners) const;
 
   double smallest_, sine_, cosine_, sine_of_largest_, inverse_squared_sine_of_largest_;
-  double share_;                        // share of the forced angle that tets must keep, including the
-                                        // reserve
+  double share_;  // tets must keep this share of the angle that creases or forced edges permit; includes the
+                  // reserve
   std::vector<double> sine_at_vertex_;  // empty if no crease is sharp enough to lower the bound
   std::shared_ptr<const ForcedEdges> forced_;
 };

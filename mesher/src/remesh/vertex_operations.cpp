@@ -82,7 +82,8 @@ bool Operations::make_cone_of_edge(Index a, Index b) {
   return true;
 }
 
-// Returns whether the faces of the cone lie on one patch, or there are none.
+// Returns whether the faces of the cone are two faces of one patch or, if it has no faces, whether the ring
+// is closed.
 bool Operations::faces_are_of_one_patch() const {
   if (cone_.faces.empty()) return ring_.closed;
   const auto& patches = mesh_.face_patch;

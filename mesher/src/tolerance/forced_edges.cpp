@@ -9,8 +9,8 @@ namespace collarmesh {
 
 namespace {
 
-// Returns the distance between two groups of corners; infinite unless each corner of one group is joined to
-// all corners of the other group and to none of its own group.
+// Returns the distance between the two groups of corners that short edges join; infinite unless the short
+// edges are exactly the edges between two groups. `across`: as for narrowness_of.
 double distance_across(const std::array<Point, 4>& p, const std::array<unsigned, 4>& across) {
   constexpr unsigned all = 15;
   const unsigned other = across[0], own = all & ~other;

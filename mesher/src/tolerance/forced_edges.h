@@ -28,8 +28,8 @@ double narrowness_of(const std::array<Point, 4>& p, const Forces& forces) {
 }
 
 /// The edges of a mesh that the input forces to be short: they join features that have no point in common, or
-/// places of one patch that face opposite ways. If these are near each other, as on the two sides of a thin
-/// wall, at a step or at a strip, no tet there can have both long edges and large angles.
+/// places of one patch that face opposite ways. If such features or places are near each other, as on the two
+/// sides of a thin wall, at a step or at a strip, no tet there can have both long edges and large angles.
 class ForcedEdges {
  public:
   /// The certificate's bound on the cosine between normals: they may be up to some 25 degrees from opposite.

@@ -31,8 +31,8 @@ constexpr double share_of_volume = 0.015, largest_factor = 2;
 // If chords would remove at least the share `much_of_wedge` of the volume below a patch in a wedge, the
 // tolerance there is lowered so that they remove about `share_of_wedge`.
 constexpr double share_of_wedge = 0.035, much_of_wedge = 0.25;
-// The smallest tolerance in wedges, relative to the largest one: triangles of CAD faces are hardly ever
-// closer to their surface.
+// The smallest tolerance in wedges, relative to the largest one. Triangles of CAD faces are hardly ever
+// nearer to their surface than this.
 constexpr double least_share_in_wedges = 0.018;
 // The growth of the tolerance per unit of distance from wedges: collars need a continuous tolerance.
 constexpr double slope_beside_wedges = 0.1;
@@ -121,7 +121,7 @@ class LocalTolerance {
 
   // Keeps the volume of wedges. Where a patch and the opposite side of a thin place meet in a crease, a
   // tolerance that is a share of the thickness would go to zero towards the crease. So the share of the
-  // volume below the patch is limited there instead.
+  // volume below the patch that chords remove is limited there instead.
   void keep_wedges() {
     std::vector<double> at_points(plc_.points.size(), INFINITY);
     bool any = false;

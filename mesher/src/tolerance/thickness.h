@@ -46,8 +46,8 @@ class Thickness {
  private:
   const Plc& plc_;
   TriangleHierarchy triangles_;
-  std::set<std::pair<Index, Index>> creases_;  // pairs of patches that meet in a crease, because wedges may
-                                               // be thin
+  // Pairs of patches that meet in a crease: the wedge between them may be thin.
+  std::set<std::pair<Index, Index>> creases_;
   std::vector<Vector> normals_;  // by triangle: unit normals of the smooth surface, which needles of its
                                  // tessellation do not disturb
 };
