@@ -29,11 +29,11 @@ constexpr unsigned most_halvings = 12;
 constexpr double around = 0.3;
 // Edges longer than this factor times the target are divided.
 constexpr double longest = coarsening::CoarseningRule::longest_new;
-// If more than the share `most_of_long` of the tets has an edge longer than `far_too_long` times the target when
-// no edge can be divided any more, edges that long are divided whatever the shapes of the new tets.
+// If more than the share `most_of_long` of the tets has an edge longer than `far_too_long` times the target
+// when no edge can be divided any more, edges that long are divided whatever the shapes of the new tets.
 constexpr double far_too_long = 2.5, most_of_long = 0.01;
-// Each seed makes `longest` smaller than the seed before by this share; after `different_seeds` seeds the values
-// repeat.
+// Each seed makes `longest` smaller than the seed before by this share; after `different_seeds` seeds the
+// values repeat.
 constexpr double less_by_seed = 0.03;
 
 // An edge beside a short edge may be `of_shortest` times as long as the short one; from there edges may grow

@@ -174,8 +174,8 @@ bool EdgeDivision::divide(Index a, Index b) {
   double worst = good_enough;
   for (const Index t : ring.tets) worst = std::min(worst, quality(t));
   Change change;
-  operations_.divide_edge(a, b, facing_ ? share_facing(a, b, ring) : 0.5,
-                          std::max(0.0, least_share_ * worst), change);
+  operations_.divide_edge(a, b, facing_ ? share_facing(a, b, ring) : 0.5, std::max(0.0, least_share_ * worst),
+                          change);
   if (change.is_none() || !edited_.stays_oriented(change)) return false;
   add_vertex(a, b, complex()[at].region, change);
   edited_.apply(std::move(change));

@@ -29,7 +29,8 @@ class EdgeDivision {
   /// Makes later calls divide an edge with a vertex near it at the place that faces the vertex, not in the
   /// middle.
   void divide_facing() { facing_ = true; }
-  /// Makes later calls divide edges whatever the shapes of the new tets, as long as their volumes are positive.
+  /// Makes later calls divide edges whatever the shapes of the new tets, as long as their volumes are
+  /// positive.
   void accept_any_shape() { least_share_ = 0; }
   /// Divides edges of tets that miss their bounds: two opposite edges of a flat tet, as between the two sides
   /// of a thin wall, at the places where they cross, which face each other; or one edge at a place that faces

@@ -456,8 +456,8 @@ bool Tries::come_nearer(const Plc& plc, const std::vector<double>& shares, doubl
   });
 }
 
-/// If nothing but volumes and thicknesses misses its limit, makes the mesh again, nearer to the smooth patches
-/// concerned, in at most half of the remaining time. Returns whether every guarantee holds then.
+/// If nothing but volumes and thicknesses misses its limit, makes the mesh again, nearer to the smooth
+/// patches concerned, in at most half of the remaining time. Returns whether every guarantee holds then.
 bool Tries::come_nearer_where_missed(const Plc& plc) {
   constexpr double least = 0.25, share_of_time = 0.5;
   const CheckReport& check = job_.made.check;
