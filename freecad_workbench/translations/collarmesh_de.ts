@@ -411,11 +411,11 @@
       <translation>Elemente quer durch Dünnes</translation>
     </message>
     <message>
-      <source>Elements know their edges</source>
+      <source>Elements name the shape's edges that they lie on</source>
       <translation>Elemente kennen ihre Kanten</translation>
     </message>
     <message>
-      <source>Elements know their faces and edges</source>
+      <source>Elements name the shape's faces and edges that they lie on</source>
       <translation>Elemente kennen ihre Flächen und Kanten</translation>
     </message>
     <message>

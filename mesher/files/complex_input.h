@@ -137,7 +137,8 @@ class ComplexInput {
   Built built_;
   std::vector<Known> known_;  // the last repaired complexes
 
-  /// The first complex whose features the program numbered, before they got names, and its options.
+  /// The first complex with the current options, if the program numbered its features; as it was before it
+  /// got names. Later complexes keep its numbers.
   struct First {
     PlcOptions options;
     std::optional<double> target_size;

@@ -78,7 +78,7 @@ RepairReport beyond_tolerance(const RepairReport& report) {
   return rest;
 }
 
-/// Appends the patches with their numbers, to which sizes and formats refer.
+/// Appends the patches with their numbers, which options for sizes take and mesh files contain.
 void append_patches(std::string& text, const Plc& plc, GroupNames names) {
   const std::vector<PatchSummary> patches = summarize_patches(plc);
   for (std::size_t k = 0; k < std::min(patches.size(), listed); ++k) {

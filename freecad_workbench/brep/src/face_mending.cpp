@@ -288,8 +288,8 @@ class Mender {
   const TopoDS_Face& face_;
   const Outline& outline_;
   double deflection_, angle_;
-  double near_ = 0;           // distance below which a point of the outline and one of the face's own count
-                              // as the same
+  double near_ = 0;  // below this distance a point of the face's own triangles is taken for a point of
+                     // the outline
   std::vector<Ends> chords_;  // chords between points
   MendedFace best_;
   std::size_t least_off_ = std::numeric_limits<std::size_t>::max();

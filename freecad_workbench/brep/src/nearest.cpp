@@ -302,7 +302,8 @@ class FaceSurface {
     return length <= converged * scale ? std::optional(to_point(at)) : std::nullopt;
   }
 
-  /// Returns the parameters of the tangent plane's point nearest to at + d, within the face's bounds.
+  /// Returns the parameters, within the face's bounds, of the point of the tangent plane at `uv` that is
+  /// nearest to a place; `d` leads from the surface's point at `uv` to that place.
   std::array<double, 2> tangent_step(const std::array<double, 2>& uv, const gp_Vec& d, const gp_Vec& du,
                                      const gp_Vec& dv) const {
     const double e = du.Dot(du), f = du.Dot(dv), g = dv.Dot(dv), a = d.Dot(du), b = d.Dot(dv);

@@ -50,7 +50,7 @@ def _groups_of_triangles():
           "listed_edges")),
         (translate("collarmesh", "Triangles of a solid look outwards, those of a surface are turned alike"),
          ("patch_orientation", "shell_orientation")),
-        (translate("collarmesh", "Elements know their faces and edges"), ("curve_tag", "patch_tag")),
+        (translate("collarmesh", "Elements name the shape's faces and edges that they lie on"), ("curve_tag", "patch_tag")),
         (translate("collarmesh", "Triangles have no small or large angle"), ("triangle_angles",)),
         _curved(),
     ]
@@ -60,7 +60,7 @@ def _groups_of_lines():
     return [
         (translate("collarmesh", "The mesh follows every edge from end to end"),
          ("curve_cover", "curve_distance", "curve_present", "vertex_feature", "vertex_present", "listed_edges")),
-        (translate("collarmesh", "Elements know their edges"), ("curve_tag",)),
+        (translate("collarmesh", "Elements name the shape's edges that they lie on"), ("curve_tag",)),
         _curved(),
     ]
 
@@ -74,7 +74,7 @@ def _groups():
           "listed_faces")),
         (translate("collarmesh", "Each solid has its volume, no element is inverted"),
          ("region_volume", "volume_kept", "thickness_kept", "region_tag", "positive_volume", "distinct_tets")),
-        (translate("collarmesh", "Elements know their faces and edges"),
+        (translate("collarmesh", "Elements name the shape's faces and edges that they lie on"),
          ("curve_tag", "patch_tag", "patch_regions", "face_regions")),
         (translate("collarmesh", "Circumradius / shortest edge is bounded"), ("radius_edge",)),
         (translate("collarmesh", "Thin elements have no small or large angle"), ("thin_angles",)),

@@ -44,7 +44,7 @@ struct RepairOptions {
 /// The number of changes of one kind, and some of their places.
 struct RepairPlaces {
   std::size_t count = 0;
-  double size = 0;           ///< largest distance, total area or volume, as the comment on the field says
+  double size = 0;           ///< a distance, area, volume or share: see each field of RepairReport
   std::vector<Point> where;  ///< at most 100
 };
 

@@ -11,7 +11,7 @@ namespace collarmesh::checks {
 /// A curve or patch of the complex, for checking that its nodes are within the allowed distance of it.
 class NodesOnFeature {
  public:
-  /// Keeps the to_check by reference.
+  /// Keeps the mesh to check by reference.
   NodesOnFeature(const MeshToCheck& to_check, const TetMesh::VertexFeature& feature);
 
   /// Adds a finding if a node is farther away than is allowed. If the feature is smooth, raises `largest` to

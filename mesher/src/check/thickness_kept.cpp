@@ -112,9 +112,9 @@ class ThicknessKept {
     sums.opposite = other;
   }
 
-  /// Returns the length of the part of a ray between entering the region through faces of one patch and
-  /// leaving it through faces of another one. If there are several such places, takes those nearest to the
-  /// places in the complex. NaN if there is none.
+  /// Returns how far a ray goes through the region: from where it enters through faces of one patch to where
+  /// it leaves through faces of another one. If it enters or leaves several times, takes the entry and the
+  /// exit that are nearest to those in the complex. NaN if one of them is missing.
   double between(const Thickness::Ray& ray, double distance, Index patch, Index other, Index region,
                  Thickness::Crossings& crossings) const {
     const TetMesh& mesh = to_check_.mesh;

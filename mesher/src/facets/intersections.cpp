@@ -129,7 +129,8 @@ class IntersectionFinder {
     return segment_illegal(pair);
   }
 
-  // Returns whether two triangles, the most frequent pairs, meet outside their common corners.
+  // Returns whether two triangles meet outside their common corners. Most pairs are two triangles, so they
+  // have a function of their own.
   bool triangles_illegal(const Corners& f, const Corners& s) const {
     const auto from = [](const Corners& t, unsigned i) {
       return Corners{t[i % 3], t[(i + 1) % 3], t[(i + 2) % 3]};

@@ -40,7 +40,7 @@ void orient(TetMesh& mesh, CellKind kind) {
   for (std::size_t i = 0; i < count; ++i) turn_cell(mesh, kind, i);
 }
 
-/// The mid-edge nodes of the cells of volumes by the ends of their edge.
+/// Finds the mid-edge node of an edge of a volume's cell from the two ends of the edge.
 class MidNodes {
  public:
   MidNodes(const std::string& path, const TetMesh& mesh) : path_(path) {

@@ -27,8 +27,8 @@ class Recut {
   /// faces of a third pair at the same places for two of these choices, but not for all three.
   enum class Moved { beside_first, beside_second, first_half };
 
-  /// Keeps all by reference except `moved`. Preconditions: the mesh is of first order, and its map contains
-  /// the corners.
+  /// Keeps all by reference except `moved`. Preconditions: the mesh is of first order, and
+  /// `mesh.periodic` has the pairs of its vertices.
   Recut(const TetMesh& mesh, const Plc& plc, const SurfaceTolerance& tolerance,
         const std::vector<PatchPair>& pairs, const std::vector<FeatureImages>& images, Moved moved);
 

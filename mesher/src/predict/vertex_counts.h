@@ -27,8 +27,8 @@ struct Model {
                                ///< corners
 };
 
-/// Returns the model of the mesh before it is coarsened, where bounds on radius-edge ratios make tets as
-/// small as walls and strips.
+/// Returns the model of the mesh before it is coarsened, where the bound on radius-edge ratios keeps
+/// edges about as short as walls are thick and strips are wide.
 inline Model model_of_refinement() {
   Model model;
   model.wall = model.strip = 1.2;

@@ -17,9 +17,9 @@ class RandomOffsets {
 
   /// Returns a vector with each coordinate from -1 to 1.
   Vector in_cube();
-  /// Returns a vector in the cube of this half edge length that does not lead into a collar. It is orthogonal
-  /// to the normal, unless the normal is zero. (Between two sheets, exact centres often lie on a third
-  /// sheet.) Zero if no such vector was found.
+  /// Returns a vector that does not lead from this point into a collar; zero if none was found. Its
+  /// coordinates are from -length to length; then it is projected onto the plane orthogonal to the normal,
+  /// unless the normal is zero.
   Vector outside_collars(const Point& from, double length, const Vector& normal);
 
  private:

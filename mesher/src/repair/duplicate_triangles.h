@@ -33,9 +33,9 @@ std::size_t cancel_duplicates(facets::ComplexDraft& draft);
 /// Returns whether the oriented surface encloses no volume, like a surface that is double everywhere.
 bool is_two_sided(const facets::ComplexDraft& draft);
 
-/// Keeps one copy of each triangle in components that are closed without the other copies, and orients the
-/// result consistently. A component is connected by corners. Returns the number of dropped triangles. Cost:
-/// O(n log n).
+/// Drops all copies but one of each triangle in those components that are closed surfaces afterwards, then
+/// orients all components consistently. A component is connected by corners. Returns the number of dropped
+/// triangles. Cost: O(n log n).
 std::size_t keep_one_side(facets::ComplexDraft& draft);
 
 }  // namespace collarmesh::repairing
