@@ -50,7 +50,8 @@ def _groups_of_triangles():
           "listed_edges")),
         (translate("collarmesh", "Triangles of a solid look outwards, those of a surface are turned alike"),
          ("patch_orientation", "shell_orientation")),
-        (translate("collarmesh", "Elements name the shape's faces and edges that they lie on"), ("curve_tag", "patch_tag")),
+        (translate("collarmesh", "Elements name the shape's faces and edges that they lie on"),
+         ("curve_tag", "patch_tag")),
         (translate("collarmesh", "Triangles have no small or large angle"), ("triangle_angles",)),
         _curved(),
     ]
