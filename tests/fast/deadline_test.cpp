@@ -62,12 +62,21 @@ TEST(RunControl, AStageThatItsProgressEndedEndsTheRun) {
   }
 }
 
-TEST(RunControl, AnAttemptThatFailsGivesItsTimeBack) {
+/// A run whose time limit is far away.
+struct LongRun {
   PipelineResult made;
-  PipelineOptions options;
-  options.mesh.time_limit = 1000;
   const Execution execution;
-  RunControl control(options, execution, made);
+  RunControl control{[] {
+                       PipelineOptions options;
+                       options.mesh.time_limit = 1000;
+                       return options;
+                     }(),
+                     execution, made};
+};
+
+TEST(RunControl, AnAttemptThatFailsGivesItsTimeBack) {
+  LongRun run;
+  RunControl& control = run.control;
   const std::atomic<bool>* const flag = control.execution().cancel;
   EXPECT_THROW(control.attempt(1e-9,
                                [&] {
@@ -83,11 +92,8 @@ TEST(RunControl, AnAttemptThatFailsGivesItsTimeBack) {
 }
 
 TEST(RunControl, AttemptsMayContainAttempts) {
-  PipelineResult made;
-  PipelineOptions options;
-  options.mesh.time_limit = 1000;
-  const Execution execution;
-  RunControl control(options, execution, made);
+  LongRun run;
+  RunControl& control = run.control;
   const auto wait = [&] {
     while (!control.execution().cancelled()) std::this_thread::yield();
     EXPECT_TRUE(control.out_of_time());
