@@ -65,7 +65,7 @@ TEST(RunControl, AStageThatItsProgressEndedEndsTheRun) {
 /// A run whose time limit is far away.
 struct LongRun {
   PipelineResult made;
-  const Execution execution;
+  const Execution execution = {};
   RunControl control{[] {
                        PipelineOptions options;
                        options.mesh.time_limit = 1000;
