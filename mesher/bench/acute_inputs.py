@@ -40,7 +40,7 @@ class AcuteInput:
 
     @property
     def polygons(self) -> list[list[Loop]]:
-        """Returns the number of polygons. Call it after write()."""
+        """Returns the facets of all parts, each a list of polygons. Call it after write()."""
         return [facet for part in self.parts for facet in part.facets]
 
     @property

@@ -173,7 +173,7 @@ def volume_of_prisms(p: np.ndarray) -> float:
 
 
 def volume_of_pyramids(p: np.ndarray) -> float:
-    """Returns the mean over both divisions of the bases."""
+    """Returns the volume, the mean over both ways to divide the bases into triangles."""
     halves = [np.abs(triple(p[:, j] - p[:, i], p[:, k] - p[:, i], p[:, 4] - p[:, i])).sum()
               for i, j, k in ((0, 1, 2), (0, 2, 3), (0, 1, 3), (1, 2, 3))]
     return sum(halves) / 12

@@ -161,7 +161,7 @@ def write_spheres(path, spheres, radius, seed):
 
 
 class Mesh:
-    """Points, tetrahedra and triangles of a .msh file with their tags, and the elements' nodes of any order."""
+    """Points of a .msh file, and the nodes and tags of its tetrahedra, triangles and lines of first or second order."""
 
     def __init__(self, path):
         import meshio
@@ -263,7 +263,8 @@ def homogenize(kind, mesh):
 
 
 def run(program, path, *options):
-    """Returns the report of a run, its CPU seconds, the program's messages, and the mesh, if there is one."""
+    """Returns the report of a run (empty if there is none), its CPU seconds, the ended process with its exit code and
+    messages, and the mesh (None if there is none)."""
     with tempfile.TemporaryDirectory() as folder:
         report = pathlib.Path(folder) / "report.json"
         before = resource.getrusage(resource.RUSAGE_CHILDREN)

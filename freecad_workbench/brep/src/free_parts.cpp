@@ -148,7 +148,7 @@ class Faces {
   }
 
  private:
-  /// Returns the faces sorted by the distances of their boxes.
+  /// Returns the distances of the faces' boxes from the box of a part, with the faces; nearest first.
   std::vector<std::pair<double, std::size_t>> by_distance_of_boxes(const TopoDS_Shape& part) const {
     const Bnd_Box box = box_of(part);
     std::vector<std::pair<double, std::size_t>> faces;

@@ -36,8 +36,8 @@ namespace {
 constexpr unsigned most_rounds = 40, most_passes = 3;
 // Each round divides the distance of an edge from its curve or patch by four.
 constexpr unsigned most_distance_rounds = 6;
-// If an edge too far from its patch is divided, the faces at one half may be farther from the patch than the
-// old faces by this factor, until the other edges around are divided, too.
+// When an edge that is too far from its patch is divided, new faces may be this many times as far from the
+// patch as the faces before. They come nearer when the other edges around are divided, too.
 constexpr double distant_halves = 2;
 // If a pass of divisions changes a smaller share of the vertices, it is the last one.
 constexpr double least_share = 0.01;

@@ -13,7 +13,7 @@
 namespace collarmesh {
 
 /// A rod inside another region, with tetrahedra in the rod and in a sheath around it. Edges on the outside of
-/// the sheath are as long as the distance between neighbouring rings of vertices around the rod.
+/// the sheath are about as long as the distance between neighbouring rings of vertices around the rod.
 struct SheathedRod {
   /// An end of the rod on a planar patch of the region around it.
   struct End {

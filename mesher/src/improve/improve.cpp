@@ -25,7 +25,7 @@ namespace collarmesh {
 namespace remeshing::improvement {
 namespace {
 
-// Changes are proposed at once for one in this many tets, so few that proposals rarely meet.
+// Changes are proposed for one in this many tets at a time: so few that a change rarely touches another one.
 constexpr std::size_t tets_per_proposal = 2000;
 constexpr std::size_t most_proposals = 1024;
 constexpr std::size_t steps_between_reports = 1024;

@@ -224,7 +224,7 @@ void write_data(FileWriter& out, std::string_view name, const CellGroups& groups
   out << "$EndElementData\n";
 }
 
-/// Returns the values of tets, and 0 for other cells.
+/// Returns a function that gives the values of tets, and 0 for other cells.
 template <class T>
 auto of_tets(const std::vector<T>& values) {
   return [&values](CellKind kind, Index i) { return kind == CellKind::tet ? values[i] : T{0}; };

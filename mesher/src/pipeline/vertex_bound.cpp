@@ -122,8 +122,8 @@ std::size_t most_vertices_expected(const Plc& plc, const PipelineOptions& option
 }
 
 std::size_t most_vertices_on_rods(const Plc& plc, const MeshOptions& options) {
-  // `by_chord`: vertices for each square of the longest chords, more than rods far thinner than the size
-  // need. `most`: the largest limit.
+  // `by_chord`: vertices for each square whose sides are the longest chords. Rods far thinner than the size
+  // need fewer. `most`: the largest limit.
   constexpr double by_chord = 8, most = 1e6;
   const SurfaceTolerance tolerance = tolerance_of(plc, options.bounds, options.size);
   const double size = smallest_size(options, plc.bounds.diagonal());

@@ -195,8 +195,8 @@ void SurfaceCheck::seed_missed_patch(Index patch) {
     seed(patch, domain_.points[point]);
 }
 
-// Adds a point of a patch as an unresolved point. If the point faces another sheet, there may be a vertex at
-// it already, up to rounding.
+// Adds a point of a patch as an unresolved point. Where the patch faces another sheet, a vertex of the patch
+// may be at the point already, up to rounding; because of `apart` it takes the point's place.
 void SurfaceCheck::seed(Index patch, const Point& at) {
   points_.add({.point = at, .feature = {2, patch}, .apart = domain_.floor_at(at)}, none);
 }

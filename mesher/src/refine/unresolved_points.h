@@ -65,7 +65,7 @@ class UnresolvedPoints {
   /// Returns whether a queue entry with this stamp is current. If not, the mesh has become finer there since:
   /// queues the point again, because other points may have larger balls now.
   bool is_due(Index point, std::uint32_t stamp);
-  /// Queues a point again, if it is still needed, because another point was inserted instead.
+  /// Queues a point again if it is still needed. Call it after another point was inserted instead.
   void queue_again(Index point) {
     if (points_[point].object != none) queue(point);
   }

@@ -223,7 +223,7 @@ class ThinShape {
   static constexpr double deep = 0.03;
   // Largest squared margin that forced edges can give a tet.
   static constexpr double good_enough = 2;
-  // Forced edges are looked up only for tets with a lower quality by angles.
+  // Forced edges are looked up only for tets whose quality by angles alone is below this.
   static constexpr double largest_forced_sine = 0.35;
 
   double smallest_sine_at(const std::array<Index, 4>& corners) const {

@@ -119,7 +119,7 @@ void SnapCuts::cut(Index t, const Corners& corners, const Origin& origin) {
   for (const Corners& piece : pieces) add_cut(piece, origin);
 }
 
-// Returns the pieces of other triangles' edges that run along a triangle, inside it.
+// Returns the pieces of other triangles' edges that lie in a triangle and not on one of its sides.
 std::vector<Edge> SnapCuts::constraints(Index t, const Corners& corners) const {
   std::vector<Edge> result;
   const auto found = along_.find(t);
