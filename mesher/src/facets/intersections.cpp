@@ -258,7 +258,7 @@ class IntersectionFinder {
     return both.centre();
   }
 
-  // Returns the place where a side of the first simplex pierces the second, a triangle.
+  // Returns a place where a side of the first simplex pierces the second, if that is a triangle.
   std::optional<Point> piercing_point(const Simplex& first, const Simplex& second, unsigned common) const {
     if (first.size < 2 || second.size < 3) return std::nullopt;
     const auto& s = second.points;

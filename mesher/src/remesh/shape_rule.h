@@ -106,8 +106,8 @@ class SliverRule final : public ShapeRule {
            (cells_ == nullptr || cells_->allow(p, corners));
   }
 
-  /// Returns whether the quality is above this value, which is positive. Much cheaper than the quality; may
-  /// return false for some tets above it.
+  /// Returns true only if the quality is above this value, which is positive. Much cheaper than the quality;
+  /// may return false for some tets above it.
   bool surely_exceeds(double quality, const Corners& p) const {
     if (forbids_thin_tets()) return false;
     const double of_obtuse = quality / obtuse_weight;

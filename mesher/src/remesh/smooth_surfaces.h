@@ -57,9 +57,10 @@ class SmoothSurfaces {
     Triangle corners;
     Index patch;
   };
-  /// Returns whether the created faces can replace the mesh's faces `old`: the created ones must agree with
-  /// the orientation of the patch at least as well as the old ones. Faces on planar patches always fit.
-  /// Computes the agreement of the old faces if it is NaN, for callers that ask about the same faces again.
+  /// Returns whether the created faces can replace the mesh's faces `old`: they must stay within the
+  /// tolerance, and agree with the orientation of the patch well enough or at least as well as the old ones.
+  /// Faces on planar patches always fit. Computes the agreement of the old faces if it is NaN, for callers
+  /// that ask about the same faces again.
   bool fit(std::span<const Index> old, std::span<const Face> created, double& agreement_of_old) const;
   bool fit(std::span<const Index> old, std::span<const Face> created) const {
     double agreement_of_old = NAN;

@@ -37,7 +37,7 @@ std::vector<Index> cancelled_among(std::vector<DuplicateTriangle> duplicates, bo
 
 namespace {
 
-// Visits groups of triangles of one soup with the same corners.
+// Visits each group of two or more triangles of one soup that have the same corners.
 template <class Visit>
 void for_each_group(const ComplexDraft& draft, const Visit& visit) {
   struct Key {

@@ -32,7 +32,7 @@ class PointMerger {
 
   SnapState& state_;
   std::vector<bool> pinned_;   // by point: whether it is loose or the end of a segment
-  std::vector<bool> in_grid_;  // by point: whether it is in the grid; points there are apart from each other
+  std::vector<bool> in_grid_;  // by point: whether it is in the grid; points there are not near each other
   PointGrid grid_;
 };
 
