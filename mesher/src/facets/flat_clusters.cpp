@@ -112,7 +112,8 @@ class ClusterFinder {
            draft_.origins[s].facet == draft_.origins[t].facet;
   }
 
-  // Returns whether the triangle of this side lies in the plane of the seed and faces the same way.
+  // Returns whether the triangle of this side lies in the plane of the seed, and faces the same way or is too
+  // low to tell.
   bool in_plane(Index side, Index seed) const {
     const Point& p = draft_.points[apex(draft_.triangles, side)];
     if (!point_in_plane(p, seed)) return false;

@@ -90,7 +90,7 @@ class ThinRule final : public AngleRule {
 /// tets may be thin, tets with an angle above the largest one of thin tets are worse than all others.
 class SliverRule final : public ShapeRule {
  public:
-  /// Keeps references to `thin` and `cells`. If `thin` is null, no tet may exceed the bound.
+  /// Keeps `thin` and `cells` by reference. If `thin` is null, no tet may exceed the radius-edge bound.
   explicit SliverRule(double radius_edge, const ThinShape* thin = nullptr, const CellBounds* cells = nullptr)
       : bound_(radius_edge), thin_(thin), cells_(cells) {}
 

@@ -69,7 +69,8 @@ class SmoothSurfaces {
   /// Takes the patches' sample points from these faces of the mesh. Call it before the faces are replaced or
   /// moved.
   void take_samples(std::span<const Index> faces);
-  /// Gives the sample points to faces that `fit`. Call it after the faces were replaced or moved.
+  /// Gives the sample points that were taken to the faces that replace the old ones or have moved.
+  /// Precondition: they `fit`.
   void give_samples(std::span<const Index> faces);
 
   /// Assigns all sample points to faces now instead of at the first query.

@@ -204,7 +204,7 @@ class ThinShape {
     const double smallest = margin * sine_, largest = margin * sine_of_largest_;
     return largest < 1 && surely_between(p, 1 - smallest * smallest, 1 - largest * largest);
   }
-  /// Returns whether the tet is thin only because the input forces an edge to be short.
+  /// Returns whether the tet keeps the bounds of thin tets, and a short forced edge lowers these bounds.
   bool is_thin_by_force(const Corners& p, const std::array<Index, 4>& corners) const {
     return !empty() && forced_ && forced_sine(p, corners) < sine_ && contains(p, corners);
   }

@@ -28,7 +28,7 @@ bool before(const CornerPoints& s, const CornerPoints& t) {
   return false;
 }
 
-// Returns the triangles that the other surface does not have.
+// Returns the triangles that are not among `others`, whatever the order of their corners.
 std::vector<CornerPoints> without(std::span<const CornerPoints> triangles,
                                   std::span<const CornerPoints> others) {
   std::vector<CornerPoints> sorted;

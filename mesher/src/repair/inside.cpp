@@ -230,7 +230,7 @@ class BoundaryKeeper {
     }
   }
 
-  // Returns the patches whose removal reduces the length of the soup's open edges, small ones first.
+  // Returns the patches whose removal reduces the length of the soup's open edges, smallest areas first.
   std::vector<Index> open_patches(const std::vector<int>& weights) const {
     std::map<Index, double> gain;
     std::vector<std::pair<Index, int>> own;  // the soup's patches at the edge, and their weights

@@ -50,7 +50,7 @@ class ItemTrees {
   struct Tree {
     std::vector<Item> items;
     std::unique_ptr<BoxTree> tree;
-    Index end = 0;  // the large tree holds the items of triangles below this number
+    Index end = 0;  // the tree `all_` has the items of triangles below this number
 
     template <class BoxOf>
     void build(std::vector<Item> new_items, const BoxOf& box_of, Index new_end) {

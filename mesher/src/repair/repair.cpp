@@ -427,8 +427,8 @@ class Repairer {
     return true;
   }
 
-  // Returns the lost tags of facets. With `only_groups`, leaves out tags of CAD faces, which are numbers and
-  // not groups.
+  // Returns the tags of facets that no facet has after the repair. With `only_groups`, leaves out tags of CAD
+  // faces, which are numbers and not groups.
   std::vector<Tag> lost_tags(const std::vector<PolygonSoup>& repaired, bool only_groups) const {
     std::set<Tag> before, after;
     for (const PolygonSoup& soup : soups_)
