@@ -28,7 +28,7 @@ double area_of(const Plc& plc, Index triangle) {
 double squares_on(const Plc& plc, const Plc::Patch& patch, double size, const SurfaceTolerance& tolerance) {
   const std::vector<Curvature> curvature =
       patch.planar ? std::vector<Curvature>(patch.triangle_count) : curvatures(plc, patch);
-  constexpr double most_per_square = 1. / 16;  // smallest area of a square, relative to that of the size: a
+  constexpr double most_per_square = 1. / 16;  // smallest area of a square, relative to the size squared: a
                                                // limit for folds, where the surface turns very sharply
   double squares = 0;
   for (Index i = 0; i < patch.triangle_count; ++i) {

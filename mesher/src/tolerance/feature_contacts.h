@@ -6,8 +6,8 @@
 
 namespace collarmesh {
 
-/// The pairs of features of a complex that have a point in common. Edges between other pairs cannot be shorter
-/// than the distance of the two features.
+/// The pairs of features of a complex that have a point in common. Edges between the features of other pairs
+/// cannot be shorter than the distance between the two features.
 class FeatureContacts {
  public:
   /// Keeps the complex by reference. Cost: near linear in the complex.
