@@ -199,8 +199,7 @@ void tetrahedralize(MeshJob& job) {
 void settle(MeshJob& job, Hope hope) {
   constexpr unsigned most_rounds = 6;
   constexpr std::size_t few = 20, within_reach = 50;
-  if (job.refined_with.bounds.interior_node)
-    return;  // coarsening would remove interior nodes
+  if (job.refined_with.bounds.interior_node) return;  // coarsening would remove interior nodes
   PipelineResult& made = job.made;
   std::size_t least = count_misshapen(job, made.result.mesh);
   if (hope == Hope::good && tets_per_poor * least > made.result.mesh.tets.size()) throw Hopeless();
