@@ -111,7 +111,7 @@ struct Option {
 /// Returns all options, in the order of the help. Some have a second row for another command.
 const std::vector<Option>& option_table();
 
-/// Returns the options with the changes that the profile of `mesh` makes.
+/// Returns the options with the changes that their `mesh.profile` makes.
 RunOptions with_profile(RunOptions options);
 
 /// Throws OptionError for values out of the range of their option and for values that contradict each other.
