@@ -39,7 +39,7 @@ struct Topology {
                                              ///< edges alone
   TopoDS_Shape all;                          ///< the shape to tessellate
   TopTools_DataMapOfShapeInteger numbers;    ///< numbers of solids, faces, edges and vertices
-  std::vector<std::pair<TopoDS_Shape, int>> kept_numbers;  ///< numbers of parts that no step changes
+  std::vector<std::pair<TopoDS_Shape, int>> kept_numbers;  ///< numbers of free parts, for steps without them
   std::vector<std::pair<Tag, Tag>> replaced_faces;         ///< pairs: the number that is gone, and the number
                                                            ///< that replaces it
   std::vector<std::string> notes;

@@ -38,7 +38,7 @@ struct RunOptions : PipelineOptions {
   std::vector<std::string> reports = {};
   std::string trace_folder = {};  ///< folder for the steps of the run
   ProgressStyle progress = ProgressStyle::automatic;
-  unsigned levels = 1;        ///< times that every tet is cut into eight, on many ranks
+  unsigned levels = 1;        ///< number of times that collarmesh-mpi cuts every tet into eight
   double slack = 10;          ///< degrees by which angles after these cuts may go beyond those of the coarse
                               ///< mesh
   bool keep_invalid = false;  ///< write meshes with elements that no solver can use, too

@@ -50,8 +50,8 @@ _ARRAYS = {
 }
 # Arrays that meshes saved by earlier versions lack.
 _LATER = ("tet_partition", *(name for name in _ARRAYS if name.startswith(("prism", "pyramid", "quad"))), "tet_layer")
-# The names of cells in meshio, and their numbers in VTK, by order. In second order both have the corners, then the
-# mid-edge nodes of ab, bc, ca, ad, bd, cd, as here.
+# The names of cells in meshio, and their numbers in VTK, by order. Tetrahedra of second order have, in both, the
+# corners, then the mid-edge nodes of ab, bc, ca, ad, bd, cd, as here.
 _MESHIO_CELLS = {
     1: {"tets": "tetra", "faces": "triangle", "edges": "line", "prisms": "wedge", "pyramids": "pyramid",
         "quads": "quad"},
