@@ -25,8 +25,8 @@ namespace {
 /// chosen only once, there. Choosing the best diagonal at each level would make ever new and worse shapes.
 constexpr std::array<PetscInt, 3> arrangements{0, 1, 2};
 
-/// Returns the quality of the four tets around the diagonal between the edges ij and kl: the smaller of their
-/// least angle and the difference between 180 degrees and their greatest angle.
+/// Returns the quality of the four tets around the diagonal between the middles of the edges ij and kl: their
+/// least dihedral angle or, if that is smaller, 180 degrees minus their greatest one.
 double goodness(const Corners& p, std::size_t i, std::size_t j, std::size_t k, std::size_t l) {
   const auto middle = [&](std::size_t a, std::size_t b) { return 0.5 * (p[a] + p[b]); };
   const Point from = middle(i, j), to = middle(k, l);

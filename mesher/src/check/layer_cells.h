@@ -17,13 +17,13 @@ inline constexpr char layer_sides[] = "layer_sides";  ///< boundaries and interf
 /// Each edge has one mid-edge node, which all cells at the edge share.
 inline constexpr char layer_mid_nodes[] = "layer_mid_nodes";
 inline constexpr char layer_volume[] = "layer_volume";  ///< regions keep their volumes
-inline constexpr char core_angles[] = "core_angles";    ///< angles of the tets beside the layers
+inline constexpr char core_angles[] = "core_angles";    ///< angles of the tets outside layers
 
 }  // namespace collarmesh::guarantee
 
 namespace collarmesh::checks {
 
-/// The least dihedral angle of tets beside layers, in degrees, if the bounds give none.
+/// The least dihedral angle of tets outside layers, in degrees, if the bounds give none.
 inline constexpr double least_core_angle = 8;
 
 /// Checks the cells of boundary layers together with the tets, by the mesh alone: arrays; positive Jacobians;
@@ -40,7 +40,7 @@ std::map<Index, double> volumes_with_layers(const TetMesh& mesh);
 void check_layer_volumes(const std::map<Index, double>& before, const TetMesh& mesh,
                          const std::map<Index, double>& allowed, CheckReport& report);
 
-/// Checks the tets beside the layers as in a mesh without layers: the radius-edge ratio is within its bound,
+/// Checks the tets outside layers as in a mesh without layers: the radius-edge ratio is within its bound,
 /// or dihedral angles have the lower bound of thin tets and all angles are at most 150 degrees. Writes the
 /// mesh's angles and sizes to the report. `walls`: for each point, the wall's point below it, or none. Adds
 /// findings.

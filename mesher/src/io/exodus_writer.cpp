@@ -76,8 +76,8 @@ class ExodusFile {
   }
 
  private:
-  /// Makes a block for each region and kind of cells. The first block of a region has the region's number;
-  /// its further blocks get numbers above those of all regions.
+  /// Makes a block for each region and kind of cells. The first block of a region gets the region's number as
+  /// its id; the region's further blocks get ids above the numbers of all regions.
   void make_blocks() {
     std::map<std::pair<Index, CellKind>, Block> blocks;
     for_each_kind(mesh_, 3, [&](CellKind kind) {
@@ -223,7 +223,7 @@ class ExodusFile {
   NetcdfWriter out_;
   std::vector<Block> blocks_;
   bool tags_fit_ = true;
-  PerKind<std::vector<std::int32_t>> number_in_file_;  // number of each cell, block by block
+  PerKind<std::vector<std::int32_t>> number_in_file_;  // of each cell, counted block by block
   std::map<Tag, std::vector<SideOfCell>> side_sets_;
   Groups node_sets_;
   std::map<Tag, std::size_t> side_numbers_, node_numbers_;
