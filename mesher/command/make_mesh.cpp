@@ -100,7 +100,7 @@ class InputSource : public ComplexSource {
   RepairOptions built_with_;
   std::string told_of_options_;                   // warnings about options, printed once even if several
                                                   // meshes are tried
-  std::shared_ptr<SizeFieldUse> size_field_use_;  // of the mesh tried last
+  std::shared_ptr<SizeFieldUse> size_field_use_;  // use in the mesh tried last
 };
 
 }  // namespace

@@ -6,7 +6,7 @@
 
 namespace collarmesh::files {
 
-/// Returns the file in a folder that lists the steps of a trace; empty without a folder.
+/// Returns the path, in this folder, of the file that lists the steps of a trace; empty without a folder.
 std::string trace_file(const std::string& folder);
 
 /// Writes the steps of a run beside `path`, a .pvd file, which lists them with their numbers as times:

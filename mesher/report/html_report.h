@@ -15,7 +15,7 @@ namespace collarmesh::report {
 std::string html_report(const nlohmann::ordered_json& report, const ShownMesh& shown,
                         const std::vector<ShownStep>& trace = {});
 
-/// Returns whether a report with this path is a page.
+/// Returns whether a report with this path is an HTML page, by its extension.
 bool is_html(const std::string& path);
 
 }  // namespace collarmesh::report

@@ -16,7 +16,7 @@ namespace collarmesh::distributed {
 
 namespace {
 
-/// The placement of mid-edge nodes of a mesh on many ranks on smooth features, such that no tet is inverted.
+/// A placement of mid-edge nodes on smooth features that inverts no tet, for a mesh on many ranks.
 class DistributedCurving {
  public:
   DistributedCurving(DM dm, const Shape& shape)

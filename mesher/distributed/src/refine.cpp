@@ -18,11 +18,12 @@ namespace {
 
 /// Rotations of a tet's corners. PETSc cuts the octahedron in the middle of a tet between the middles of the
 /// edges 01 and 23. A rotation of the first three corners by one of these amounts chooses another pair of
-/// edges. PETSc numbers the corners of the eight children so that their own diagonals are those of Bey's rule
-/// (Tetrahedral grid refinement, 1995): the four tets in the octahedron are cut next between the middles of
-/// this diagonal and of the opposite edge, the other four like the tet that they are similar to. By that rule
-/// all descendants of a tet have at most three shapes, which appear at the first level. So the diagonal is
-/// chosen only once, there. Choosing the best diagonal at each level would make ever new and worse shapes.
+/// edges. PETSc numbers the corners of the eight children so that later levels cut them along the diagonals
+/// of Bey's rule (Tetrahedral grid refinement, 1995): the four tets in the octahedron are cut next between
+/// the middles of this diagonal and of the opposite edge, the other four like the tet that they are similar
+/// to. By that rule all descendants of a tet have at most three shapes, which appear at the first level. So
+/// the diagonal is chosen only once, there. Choosing the best diagonal at each level would make ever new and
+/// worse shapes.
 constexpr std::array<PetscInt, 3> arrangements{0, 1, 2};
 
 /// Returns the quality of the four tets around the diagonal between the middles of the edges ij and kl: their

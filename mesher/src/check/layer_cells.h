@@ -27,9 +27,9 @@ namespace collarmesh::checks {
 inline constexpr double least_core_angle = 8;
 
 /// Checks the cells of boundary layers together with the tets, by the mesh alone: arrays; positive Jacobians;
-/// each side of a cell has another cell behind it, turned the other way, or is listed among the faces or
-/// quadrangles; sides between regions are listed, too; nodes of second order. Adds findings. A mesh without
-/// layers may be given, too. Cost: O(n log n).
+/// each side of a cell either is a side of one other cell, which lies on its other side, or is listed among
+/// the faces or quadrangles; sides between regions are listed, too; nodes of second order. Adds findings. A
+/// mesh without layers may be given, too. Cost: O(n log n).
 void check_layer_cells(const TetMesh& mesh, CheckReport& report, std::size_t findings_per_guarantee = 20);
 
 /// Returns the volumes of regions, by index, of straight tets, prisms and pyramids.

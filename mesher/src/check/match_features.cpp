@@ -83,7 +83,8 @@ class Ballot {
   void vote(Index piece, Index feature, double weight) {
     if (feature != none) votes_.push_back({piece, feature, weight});
   }
-  /// Returns the feature with most votes for each piece; none for a piece without votes.
+  /// Returns for each piece the feature with the largest total weight of votes; none for a piece without
+  /// votes.
   std::vector<Index> count(std::size_t pieces) {
     std::stable_sort(votes_.begin(), votes_.end(), [](const Vote& a, const Vote& b) {
       return a.piece != b.piece ? a.piece < b.piece : a.feature < b.feature;

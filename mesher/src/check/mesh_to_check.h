@@ -144,8 +144,8 @@ bool check_points(const MeshToCheck& to_check, Findings& findings);
 /// finds the region of each connected part (bounded by listed faces and planar patches) from its largest tet.
 /// If most tags of faces or edges are missing or unknown to the complex, makes new faces and edges from the
 /// tets and the complex. The result has the complex's labels; a note says which were found. Returns nothing
-/// if no label is missing, or if tets lie outside, which is a finding. Precondition: check_arrays and
-/// check_points hold. Cost: O(n log n).
+/// if no label is missing, or if tets lie outside all regions, which is a finding. Precondition: check_arrays
+/// and check_points hold. Cost: O(n log n).
 std::optional<TetMesh> place_by_position(const MeshToCheck& to_check, CheckReport& report,
                                          Findings& findings);
 

@@ -266,8 +266,8 @@ bool commute(const TetMesh::Motion& f, const TetMesh::Motion& g, const Point& p)
   return distance(one, other) <= rounding_of(f, r) + rounding_of(g, r);
 }
 
-/// Checks edges of a cell, where a node has images by two pairs and each image has an image by the other
-/// pair. If the motions commute there, both second images must be the same node.
+/// Checks nodes at the edges of a periodic cell: they have images by two pairs, and each image has an image
+/// by the other pair. If the motions commute there, both second images must be the same node.
 void check_corners(const TetMesh& mesh, const std::vector<std::optional<Map>>& maps, Findings& findings) {
   for (std::size_t i = 0; i < maps.size(); ++i)
     for (std::size_t j = i + 1; j < maps.size(); ++j) {

@@ -186,7 +186,7 @@ class SplitCheck {
   std::vector<PlacedSide> sides_;
 };
 
-/// Returns the areas of patches, by index, leaving out faces with some tags.
+/// Returns the areas of patches, by index, without the faces that have one of these tags.
 std::map<Index, double> areas_of(const TetMesh& mesh, const std::set<Tag>& left_out) {
   std::map<Index, double> areas;
   for (Index f = 0; f < mesh.faces.size(); ++f) {

@@ -498,7 +498,7 @@ class AbaqusReader {
     return tag;
   }
 
-  /// Reads the sets of elements by region (VOLUME_1) of our own files.
+  /// Reads the regions of cells from the element sets VOLUME_1 and so on in our own files.
   void read_volumes() {
     PerKind<std::vector<Index>> regions;
     for (const CellKind kind : all_cell_kinds)
@@ -536,7 +536,7 @@ class AbaqusReader {
     return static_cast<std::size_t>(found - numbers.begin());
   }
 
-  /// Adds a side, turned outwards.
+  /// Adds a side of an element to the faces, with its normal outwards.
   void add_side(const Side& side, Tag tag) {
     const Index element = elements_.find(side.element);
     if (element == none || shape_of(places_[element].kind).dimension != 3) return;

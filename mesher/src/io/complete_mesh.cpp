@@ -40,7 +40,7 @@ void orient(TetMesh& mesh, CellKind kind) {
   for (std::size_t i = 0; i < count; ++i) turn_cell(mesh, kind, i);
 }
 
-/// Finds the mid-edge node of an edge of a volume's cell from the two ends of the edge.
+/// The mid-edge nodes of cells with volume, by the two ends of their edges.
 class MidNodes {
  public:
   MidNodes(const std::string& path, const TetMesh& mesh) : path_(path) {

@@ -223,7 +223,7 @@ class ExodusFile {
   NetcdfWriter out_;
   std::vector<Block> blocks_;
   bool tags_fit_ = true;
-  PerKind<std::vector<std::int32_t>> number_in_file_;  // of each cell, counted block by block
+  PerKind<std::vector<std::int32_t>> number_in_file_;  // number of each cell, block by block
   std::map<Tag, std::vector<SideOfCell>> side_sets_;
   Groups node_sets_;
   std::map<Tag, std::size_t> side_numbers_, node_numbers_;

@@ -56,7 +56,7 @@ float finite(double value) {
   return static_cast<float>(std::min(value, double{std::numeric_limits<float>::max()}));
 }
 
-/// A maker of a grid's arrays, several at once.
+/// A maker of a grid's arrays. Several threads fill different arrays at once.
 class GridMaker {
  public:
   explicit GridMaker(const TetMesh& mesh) : mesh_(mesh) {

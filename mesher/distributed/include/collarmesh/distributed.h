@@ -34,7 +34,7 @@ struct Shape {
 struct AngleBounds {
   std::array<double, 2> least{180, 180}, most{0, 0};
 
-  /// Widens the bounds to those of a tet.
+  /// Widens the bounds so that they include the angles of a tet.
   void add(const TetQuality& tet, bool in_collar) {
     least[in_collar] = std::min(least[in_collar], tet.min_dihedral);
     most[in_collar] = std::max(most[in_collar], tet.max_dihedral);
