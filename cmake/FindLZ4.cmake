@@ -1,4 +1,4 @@
-# LZ4 as distributions pack it has no package of its own for CMake. Defines LZ4::LZ4.
+# Distributions' packages of LZ4 have no package for CMake in them. Defines LZ4::LZ4.
 include(FindPackageHandleStandardArgs)
 find_path(LZ4_INCLUDE_DIR lz4.h)
 find_library(LZ4_LIBRARY lz4)

@@ -1,4 +1,4 @@
-# libdeflate before 1.15 has no package of its own for CMake. Defines LibDeflate::LibDeflate.
+# libdeflate before 1.15 comes without a package for CMake. Defines LibDeflate::LibDeflate.
 include(FindPackageHandleStandardArgs)
 find_path(LibDeflate_INCLUDE_DIR libdeflate.h)
 find_library(LibDeflate_LIBRARY deflate)

@@ -21,7 +21,7 @@ logged() {
   return $code
 }
 
-# The packages of these groups (cmake/packages.txt) that are not installed.
+# Print the packages of these groups (cmake/packages.txt) that are not installed.
 missing_packages() {
   local group package
   for group in "$@"; do
@@ -62,7 +62,7 @@ install_packages() {
   return 1
 }
 
-# Was a package that the program is built with installed or upgraded since?
+# Was a package that the program is built with installed or upgraded since the last build?
 packages_changed() {
   local group package list
   while read -r group package; do

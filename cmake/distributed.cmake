@@ -1,5 +1,5 @@
-# Meshes on many ranks are built where PETSc is found, with the MPI and the HDF5 that it was built with (packages
-# libpetsc-real-dev, libhdf5-openmpi-dev).
+# collarmesh-mpi and its library, for meshes on many ranks, are built where PETSc is found, with the MPI and the HDF5
+# that PETSc was built with (packages libpetsc-real-dev, libhdf5-openmpi-dev).
 set(COLLARMESH_DISTRIBUTED AUTO CACHE STRING "Build collarmesh-mpi: AUTO (where PETSc is found), ON or OFF")
 set_property(CACHE COLLARMESH_DISTRIBUTED PROPERTY STRINGS AUTO ON OFF)
 set(COLLARMESH_HAS_DISTRIBUTED OFF)

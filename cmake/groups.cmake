@@ -7,7 +7,7 @@ function(collarmesh_in_groups target)
   endif()
   set(most 12)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
-  # GCC 12 finds copies of 2^63 bytes in sums of strings (its bug 105651), more of them the more it inlines.
+  # GCC 12 warns wrongly of copies of 2^63 bytes where inlined code concatenates strings (its bug 105651).
   target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
   get_target_property(sources ${target} SOURCES)
   list(FILTER sources INCLUDE REGEX "[.]cpp$")

@@ -27,7 +27,7 @@ function(collarmesh_html_report_page folder source)
   foreach(part style library script)
     string(REPLACE "<!--${part}-->" "${${part}}" page "${page}")
   endforeach()
-  # Adjacent literals are one string; none is longer than compilers must accept.
+  # Compilers join adjacent literals to one string; each literal is shorter than the limit that compilers may have.
   string(LENGTH "${page}" length)
   set(literals "")
   set(at 0)

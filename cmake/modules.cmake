@@ -4,9 +4,9 @@ set(COLLARMESH_MODULE_DIR ${CMAKE_INSTALL_LIBDIR}/collarmesh)
 set(COLLARMESH_MODULE_BUILD_DIR ${PROJECT_BINARY_DIR}/lib/collarmesh)
 list(APPEND CMAKE_BUILD_RPATH ${COLLARMESH_MODULE_BUILD_DIR})
 
-# Sets the run path of an installed target in `folder` (absolute). The target in the build folder has the same
-# run path, which also contains ../lib: CMake would end a run path that it is to replace with a colon, which
-# stands for the current folder.
+# Sets the run path of a target that is installed in `folder` (absolute). The target in the build folder has the
+# same run path, which therefore also contains ../lib/collarmesh. If CMake had to replace the run path at the
+# installation, it would end the one in the build folder with a colon, which stands for the current folder.
 function(collarmesh_run_path target folder)
   file(RELATIVE_PATH path ${folder} ${CMAKE_INSTALL_FULL_LIBDIR}/collarmesh)
   set(run_path $ORIGIN/${path} $ORIGIN/../lib/collarmesh)

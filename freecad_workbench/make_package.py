@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The add-on as FreeCAD's Add-on Manager wants it: a folder, or a .zip, with package.xml at its base and the licence
-inside.
+"""Writes the add-on as FreeCAD's Add-on Manager wants it: a folder, or a .zip, with package.xml at its base and the
+licence inside.
 
     make_package.py OUTPUT [--site URL] [--maintainer NAME] [--email ADDRESS] [--date YYYY-MM-DD]
 

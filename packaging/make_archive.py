@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Archives of the program that run without installing anything: unpack, and run bin/collarmesh.
+"""Makes archives of the program that run without installing anything: unpack, and run bin/collarmesh.
 
     make_archive.py BUILD OUTPUT [options]    BUILD: a folder in which collarmesh_product was built; OUTPUT: a folder
 
@@ -30,12 +30,12 @@ The licence is in LICENSE; those of the libraries are in share/doc/collarmesh/li
 
 
 def install(build, prefix):
-    """`cmake --install`."""
+    """Runs `cmake --install`."""
     subprocess.run(["cmake", "--install", build, "--prefix", prefix, "--strip"], check=True, stdout=subprocess.DEVNULL)
 
 
 def copy_program(prefix, root):
-    """The program, the modules that it loads, its manual page and completions."""
+    """Copies the program, the modules that it loads, its manual page, completions and licence."""
     (root / "bin").mkdir(parents=True)
     shutil.copy2(prefix / "bin/collarmesh", root / "bin")
     modules = root / "lib/collarmesh"
@@ -48,7 +48,7 @@ def copy_program(prefix, root):
 
 
 def packed(root, output):
-    """The same files give the same archive."""
+    """Packs a folder. The same files always give the same archive."""
     subprocess.run(["tar", "--sort=name", "--mtime=@0", "--owner=0", "--group=0", "--numeric-owner", "-C", root.parent,
                     "-czf", output, root.name], check=True)
     print(output)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A wheel that carries its libraries: `pip install` of it needs no compiler and no package of the system.
+"""Makes a wheel that contains its libraries: `pip install` of it needs no compiler and no package of the system.
 
     make_wheel.py OUTPUT    for the Python that runs it; OUTPUT: a folder
 

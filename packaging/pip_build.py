@@ -1,5 +1,5 @@
 """Does the work of `pip install .` and `pip wheel .`: builds the mesher with CMake and makes a wheel of the package
-`collarmesh`, of the program and of the modules that they load. Nothing but Python itself is needed for it.
+`collarmesh`, of the program and of the modules that they load. Needs no Python package.
 
 COLLARMESH_BUILD_DIR names a CMake build that is there already; then nothing is compiled. CMAKE_BUILD_PARALLEL_LEVEL
 says how many compilers run at a time.
@@ -33,7 +33,7 @@ Requires-Dist: numpy
 
 
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
-    """pip's entry; returns the name of the wheel."""
+    """Makes the wheel for pip. Returns its name."""
     with tempfile.TemporaryDirectory(prefix="collarmesh-wheel-") as folder:
         root = pathlib.Path(folder) / "root"
         name = lay_out(root, pathlib.Path(folder) / "build")
@@ -42,7 +42,7 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
 
 
 def build_sdist(sdist_directory, config_settings=None):
-    """pip's entry; returns the name of an archive of the sources."""
+    """Makes an archive of the sources for pip. Returns its name."""
     name = f"collarmesh-{project.version()}"
     subprocess.run(["git", "-C", SOURCES, "archive", f"--prefix={name}/", "-o",
                     pathlib.Path(sdist_directory).resolve() / f"{name}.tar.gz", "HEAD"], check=True)
@@ -50,7 +50,8 @@ def build_sdist(sdist_directory, config_settings=None):
 
 
 def lay_out(root, folder):
-    """The files of the wheel below `root`, built in `folder` unless they are built; returns the wheel's name."""
+    """Puts the files of the wheel below `root`, from COLLARMESH_BUILD_DIR if that is set, else from a new build in
+    `folder`. Returns the wheel's name."""
     made = os.environ.get("COLLARMESH_BUILD_DIR")
     if made is None:
         compile_package(folder)
@@ -62,7 +63,7 @@ def lay_out(root, folder):
         for component in ("python", "modules", "program"):
             subprocess.run(["cmake", "--install", folder, "--prefix", prefix,
                            "--component", component, "--strip"], check=True)
-        # The program and its modules lie beside each other as in any prefix.
+        # The program finds its modules as below any prefix: bin and lib lie beside each other.
         for pattern, place in (("_core*.so", "."), ("_functions.py", "."), ("collarmesh_*.so", "lib/collarmesh"),
                                ("bin/collarmesh", "bin")):
             for path in pathlib.Path(prefix).rglob(pattern):
@@ -89,14 +90,14 @@ def compile_package(folder):
 
 
 def packages_needed():
-    """Returns the packages that the program and its module are built with."""
+    """Returns the Debian packages that the program and the Python module are built with."""
     table = [line.split() for line in (SOURCES / "cmake/packages.txt").read_text().splitlines()]
     return " ".join(name for group, name in (row for row in table if len(row) == 2)
                     if group == "build" or name in ("python3-dev", "pybind11-dev"))
 
 
 def describe(root):
-    """Write what pip wants to know of the wheel; returns its name."""
+    """Writes the metadata that pip reads from the wheel. Returns the wheel's name."""
     information = root / f"collarmesh-{project.version()}.dist-info"
     information.mkdir()
     python = "cp" + sysconfig.get_config_var("py_version_nodot")
@@ -113,7 +114,7 @@ def describe(root):
 
 
 def pack(root, wheel):
-    """The same files give the same wheel."""
+    """Packs the wheel. The same files always give the same wheel."""
     (information,) = root.glob("*.dist-info")
     lines = []
     with zipfile.ZipFile(wheel, "w", zipfile.ZIP_DEFLATED) as archive:

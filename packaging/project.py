@@ -1,4 +1,4 @@
-"""The version of these sources, and the date that what is made of them has."""
+"""The version of these sources, and the date of packages that are made from them."""
 
 import datetime
 import os
@@ -10,13 +10,13 @@ SOURCES = pathlib.Path(__file__).resolve().parents[1]
 
 
 def version():
-    """The project's."""
+    """Returns the version of the project."""
     text = (SOURCES / "CMakeLists.txt").read_text(encoding="utf-8")
     return re.search(r"project\(collarmesh VERSION ([\d.]+)", text)[1]
 
 
 def date():
-    """SOURCE_DATE_EPOCH, or the day of the last commit."""
+    """Returns the day of SOURCE_DATE_EPOCH if that is set, else of the last commit: 2026-01-31."""
     seconds = os.environ.get("SOURCE_DATE_EPOCH", "")
     if not seconds:
         git = ["git", "-C", SOURCES, "log", "-1", "--format=%ct"]

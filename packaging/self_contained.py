@@ -1,6 +1,6 @@
-"""Makes a folder of programs and modules run where their libraries are not installed: the libraries are put beside
-them, with run paths that are relative. The C library stays the system's, as it belongs to the kernel and to all other
-processes; `glibc_needed` says which versions will do."""
+"""Makes a folder of programs and modules run where their libraries are not installed: puts the libraries beside them
+and sets relative run paths. The C library is not included, because it has to fit the system; `glibc_needed` returns the
+oldest version that suffices."""
 
 import hashlib
 import os
@@ -9,16 +9,16 @@ import re
 import shutil
 import subprocess
 
-# The loader and what comes with it.
+# The dynamic loader and the libraries of the GNU C library.
 C_LIBRARY = re.compile(
     r"(linux-vdso|ld-linux.*|lib(c|m|dl|rt|pthread|util|resolv|anl|nsl|mvec|nss_.*|thread_db))\.so\.\d+")
-# A process has one C++ library, which is the newest that any part of it needs: the program that loads a module brings
-# it.
+# A process has only one C++ library, which must be as new as any part of the process needs: a module uses that of the
+# program that loads it.
 CXX_LIBRARY = re.compile(r"lib(stdc\+\+|gcc_s)\.so\.\d+")
 
 
 def elf_files(folder):
-    """Programs and shared libraries below a folder, links left out."""
+    """Yields the programs and shared libraries below a folder, without links."""
     for path in sorted(pathlib.Path(folder).rglob("*")):
         if path.is_file() and not path.is_symlink():
             with path.open("rb") as file:
@@ -31,7 +31,7 @@ def _output(*command):
 
 
 def _libraries_of(file):
-    """{name: path} of all that the loader brings in for a file. Raises SystemExit for one that is nowhere."""
+    """Returns {name: path} of all libraries that the loader loads for a file. Raises SystemExit if one is not found."""
     found = {}
     for line in _output("ldd", file).splitlines():
         name, arrow, rest = line.strip().partition(" => ")
@@ -49,17 +49,18 @@ def _needed_by(file):
 
 
 def _unlike_others(path):
-    """The name of a library with a hash of its content in it, so that no other of its name is taken for it."""
+    """Returns the name of a library with a hash of its content, so that no other library has the same name."""
     digest = hashlib.sha256(pathlib.Path(path).read_bytes()).hexdigest()[:8]
     stem, dot, rest = pathlib.Path(path).name.partition(".so")
     return f"{stem}-{digest}{dot}{rest}"
 
 
 def carry_libraries(folder, libraries, *, into_processes_of_others=False):
-    """Copy what the files below `folder` need into the folder `libraries` below it. Returns where it came from.
+    """Copies the libraries that the files below `folder` need into the folder `libraries` below it. Returns the paths
+    of the originals.
 
-    into_processes_of_others: the files are loaded by programs that have libraries of their own. Then the names of the
-    copies are ones that nobody else has, and the C++ library is left to the program.
+    into_processes_of_others: programs that have libraries of their own load the files. Then the copies get unique
+    names, and the C++ library is not copied.
     """
     folder, libraries = pathlib.Path(folder), pathlib.Path(libraries)
     own = list(elf_files(folder))
@@ -82,7 +83,7 @@ def carry_libraries(folder, libraries, *, into_processes_of_others=False):
 
 
 def _lead_to(file, libraries, names):
-    """Make a file look for its libraries in a folder, before all folders that the environment names."""
+    """Makes a file look for its libraries in a folder before it looks in the folders that the environment names."""
     for name in _needed_by(file):
         if names.get(name, name) != name:
             subprocess.run(["patchelf", "--replace-needed", name, names[name], file], check=True)
@@ -95,7 +96,7 @@ def _lead_to(file, libraries, names):
 
 
 def glibc_needed(folder):
-    """The oldest version of the GNU C library with which all files below a folder run: (2, 36)."""
+    """Returns the oldest version of the GNU C library with which all files below a folder run, such as (2, 36)."""
     versions = [(2, 0)]
     for file in elf_files(folder):
         told = _output("objdump", "-T", file)
@@ -104,7 +105,7 @@ def glibc_needed(folder):
 
 
 def add_licences(libraries, folder):
-    """Beside the libraries of Debian's packages, who may copy these."""
+    """Copies the licences of the Debian packages that have these libraries into a folder."""
     folder.mkdir(parents=True, exist_ok=True)
     for library in libraries:
         for path in {library, os.path.realpath(library)}:

@@ -1,4 +1,4 @@
-"""Drawing of meshes: pieces of grids, and VTK's actors for them."""
+"""Draws meshes: pieces of grids, and VTK's actors for them."""
 
 from itertools import combinations
 
@@ -6,7 +6,7 @@ import vtk
 from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 SOLID, EDGES = (0.80, 0.84, 0.90), (0.13, 0.16, 0.20)
-SCALE = 2.7  # lines and letters are scaled for a picture 1040 wide
+SCALE = 2.7  # widths of lines and sizes of letters are for pictures 1040 wide; pictures are drawn 2800 wide
 STAR, BOOK, CREASE = (0.96, 0.62, 0.20), (0.22, 0.50, 0.76), (0.80, 0.08, 0.16)
 
 
@@ -26,7 +26,7 @@ def extract(grid, cells):
 
 
 def with_quality(grid):
-    """Adds the cell array `angle`: the smallest dihedral angle of each tet."""
+    """Adds the cell array `min_dihedral`, the smallest dihedral angle of each tet in degrees, if it is absent."""
     if not grid.GetCellData().HasArray("min_dihedral"):
         quality = vtk.vtkMeshQuality()
         quality.SetInputData(grid)
@@ -78,7 +78,7 @@ def surface_cells(surface, cells):
 
 
 def palette():
-    """Returns colours for angles from poor (warm) to regular (cool)."""
+    """Returns colours for angles in degrees, from poor (warm) to regular (cool)."""
     colours = vtk.vtkColorTransferFunction()
     colours.SetColorSpaceToLab()
     for angle, rgb in ((0, (0.72, 0.10, 0.12)), (12, (0.94, 0.45, 0.25)), (25, (0.99, 0.83, 0.45)),
@@ -169,7 +169,7 @@ def corners(grid, cell):
 
 
 def crease_edges(tets, edges):
-    """Returns the curve edges whose tets are all books."""
+    """Returns the numbers of the curve edges whose tets all belong to books."""
     around = {corners(edges, e): set() for e in range(edges.GetNumberOfCells())}
     for cell, kind in enumerate(array(tets, "collar")):
         for edge in combinations(corners(tets, cell), 2):

@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""The pictures of the FreeCAD page: the window, as its tests see it, and a strip from a part to its stresses.
+"""Makes the pictures of the FreeCAD page: the window during its tests, and a strip from a part to its stresses.
 
     resources/freecad_pictures.py PROGRAM [FOLDER]
 
-PROGRAM is the mesher. Needs freecad, xvfb, calculix-ccx and python3-pil. A failing test fails this.
+PROGRAM is the mesher. Needs freecad, xvfb, calculix-ccx and python3-pil. Fails if a test fails.
 """
 
 import pathlib
@@ -26,7 +26,7 @@ PAGE = {  # pictures, by the test that makes them
     "refine_by_result_gui_test.py": ("freecad_refine_by_result", "freecad_refined"),
     "document_gui_test.py": ("freecad_out_of_date", "freecad_menu", "freecad_statistics"),
 }
-LARGEST = 200000  # largest size of a picture, bytes
+LARGEST = 200000  # largest size of a file, bytes
 STEP = (500, 327)
 BARS = 100  # pixels at the top of FreeCAD's window, the same in all pictures
 GAP = 8
@@ -37,7 +37,7 @@ def take(program, script, folder):
 
 
 def save(picture, path):
-    """Saves a picture with as many colours as its size permits."""
+    """Saves a picture with the most colours (256 to 64) with which its file is smaller than LARGEST."""
     for colours in (256, 192, 128, 96, 64):
         few = picture.convert("RGB").quantize(colours, kmeans=2, dither=Image.Dither.NONE)
         few.save(path, optimize=True)

@@ -1,4 +1,4 @@
-"""Six pictures in FreeCAD's window, from a part to its stresses. Run by freecad_pictures.py."""
+"""Takes six pictures of FreeCAD's window, from a part to its stresses. Run by freecad_pictures.py."""
 
 import os
 import pathlib
@@ -23,7 +23,7 @@ SIZE = (1040, 780)  # size of the window
 
 
 def bracket():
-    """An L with a rounded corner and a hole in each leg."""
+    """Returns an L with a rounded inner corner and a hole in each leg."""
     corners = [(0, 0, 0), (50, 0, 0), (50, 0, 8), (8, 0, 8), (8, 0, 45), (0, 0, 45), (0, 0, 0)]
     shape = Part.Face(Part.makePolygon([FreeCAD.Vector(*p) for p in corners])).extrude(FreeCAD.Vector(0, 30, 0))
     inner = [e for e in shape.Edges if all(abs(v.X - 8) + abs(v.Z - 8) < 1e-9 for v in e.Vertexes)]

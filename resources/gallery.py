@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The fifteen pictures of the gallery and that of a report, from input to PNG.
+"""Makes the fifteen pictures of the gallery and that of a report, from input to PNG.
 
     xvfb-run -a resources/gallery.py [--only NAME...] [--into FOLDER] [--draft]
 
@@ -26,7 +26,7 @@ from drawing import (BOOK, SCALE, STAR, actor_of, array, centres, crease_edges, 
 HERE = pathlib.Path(__file__).resolve().parent
 SIZE = (2800, 1960)  # pictures are drawn twice as large as they are saved
 COLOURS = 128
-draft = False  # drawn as small as they are saved
+draft = False  # True: pictures are drawn as small as they are saved
 HUES = ((0.36, 0.56, 0.78), (0.93, 0.66, 0.32), (0.50, 0.72, 0.47), (0.80, 0.46, 0.46), (0.62, 0.53, 0.76),
         (0.40, 0.72, 0.74), (0.88, 0.80, 0.40), (0.72, 0.60, 0.50), (0.86, 0.60, 0.74), (0.58, 0.64, 0.70),
         (0.30, 0.62, 0.56), (0.95, 0.75, 0.62), (0.44, 0.44, 0.66), (0.70, 0.82, 0.60), (0.60, 0.32, 0.40))
@@ -75,7 +75,7 @@ def joined(*parts):
 
 
 def tube(begin, end, radius, sides=24):
-    """A closed prism of many sides."""
+    """Returns a closed prism of many sides."""
     begin, end = np.array(begin, float), np.array(end, float)
     axis = (end - begin) / np.linalg.norm(end - begin)
     u = np.cross(axis, (0.3, 0.5, 0.8))
@@ -88,7 +88,7 @@ def tube(begin, end, radius, sides=24):
 
 
 def sectors(path, count, height=1.2):
-    """Solids around an axis, which is their common edge."""
+    """Writes `count` solids around an axis, which is their common edge."""
     angles = np.linspace(0, 2 * np.pi, count, endpoint=False)
     ring = [(np.cos(t), np.sin(t)) for t in angles]
     points = [(0, 0, 0), (0, 0, height)] + [(x, y, z) for z in (0, height) for x, y in ring]
@@ -117,20 +117,21 @@ def tets(grid):
 
 
 def behind(grid, normal, at):
-    """Returns the cells behind a plane, whose position is a share of the way along its normal."""
+    """Returns for each cell whether it is behind a plane. `at`: the plane's place, as a share of the way through the
+    grid along the normal."""
     offsets = centres(grid) @ np.array(normal, float)
     return offsets <= offsets.min() + at * (offsets.max() - offsets.min())
 
 
 def cut_open(grid, normal, at):
-    """Returns whole tets behind a plane; its cut shows them by their smallest dihedral angle."""
+    """Returns actors for the tets behind a plane; where the mesh is cut, colours show the smallest dihedral angles."""
     whole = with_quality(tets(grid))
     outside, inside = split_by_origin(extract(whole, behind(whole, normal, at).nonzero()[0]), whole)
     return [actor_of(outside), actor_of(inside, palette()), legend(palette())]
 
 
 def coloured(grid, values):
-    """Returns a piece with its own colour for each value."""
+    """Returns an actor for each value: the cells with this value, in a colour of their own."""
     actors = []
     for k, value in enumerate(sorted(set(values))):
         actors.append(tinted(extract(grid, (values == value).nonzero()[0]), HUES[k % len(HUES)], width=1.1))
@@ -138,7 +139,7 @@ def coloured(grid, values):
 
 
 def surface(path, colour):
-    """Returns the polygons of an .off file."""
+    """Returns an actor for the polygons of an .off file."""
     words = pathlib.Path(path).read_text().split()
     count, facets = int(words[1]), int(words[2])
     points, polygons = vtk.vtkPoints(), vtk.vtkCellArray()
@@ -224,7 +225,7 @@ def names(path):
 
 
 def first_cell(locator, eye, at):
-    """Returns the cell that is visible in this direction."""
+    """Returns the first cell on the way from the eye through `at`."""
     share, cell, part = vtk.mutable(0.0), vtk.mutable(0), vtk.mutable(0)
     place, within = [0.0] * 3, [0.0] * 3
     beyond = eye + 1.1 * (at - eye)
@@ -316,7 +317,7 @@ def lengths_palette():
 
 
 def section(grid, y):
-    """Draws the tets where a plane cuts them, by the edge length of the regular tet with their volume."""
+    """Returns an actor for a plane's cuts of tets, coloured by the edge length of the regular tet of equal volume."""
     sizes = vtk.vtkMeshQuality()
     sizes.SetInputData(tets(grid))
     sizes.SetTetQualityMeasureToVolume()
@@ -369,7 +370,7 @@ def collar(path):
 
 
 def fan(path):
-    """Draws sheets that meet in the axis of a cylinder, at 10 degrees each."""
+    """Draws solids between sheets that meet in the axis of a cylinder, 10 degrees from each other."""
     sectors("fan.poly", 36, height=0.8)
     grid = mesh("fan.poly", "--size", 0.12)
     cells = tets(grid)
@@ -397,7 +398,7 @@ def repair(path):
 
 
 def wrap(path):
-    """Draws strips that touch nothing, as a drawing may contain them."""
+    """Draws nine strips that are not joined, as a drawing may contain them, and the mesh of their wrap."""
     points, faces = [], []
     for k in range(9):
         turn = k * np.pi / 9
@@ -433,7 +434,7 @@ U
 
 
 def displacements(path):
-    """Returns the displacements of the nodes in CalculiX's result file, by their numbers."""
+    """Returns the displacements in CalculiX's result file, by the numbers of nodes."""
     found, reading = {}, False
     for line in pathlib.Path(path).read_text().splitlines():
         if line.startswith(" -4"):
@@ -506,7 +507,7 @@ def report(path):
     run("chromium", "--headless=new", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader",
         "--enable-unsafe-swiftshader", "--hide-scrollbars", "--window-size=1400,1000", "--virtual-time-budget=20000",
         f"--screenshot={path}", f"{page.as_uri()}#cut=x,0.5&turn=15")
-    Image.open(path).convert("RGB").save(path, optimize=True)  # for the legend
+    Image.open(path).convert("RGB").save(path, optimize=True)  # with all colours, for the legend
 
 
 def coil(path):

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The picture of the page on boundary layers: cuts through a bracket and through the room around an airfoil.
+"""Draws the picture of the page on boundary layers: cuts through a bracket and through the room around an airfoil.
 
     xvfb-run -a resources/layers_pictures.py [FOLDER]
 
@@ -23,8 +23,8 @@ TETS, ODD, EVEN, PYRAMIDS = gallery.GREY, (0.93, 0.66, 0.32), (0.97, 0.84, 0.60)
 
 
 def cut_open(grid, normal, at, near=lambda centres: True):
-    """Returns whole cells behind a plane: tets, odd and even layers, pyramids. `near`: chooses cells by their
-    centres."""
+    """Returns actors for the cells behind a plane, with a colour each for tets, odd layers, even layers and pyramids.
+    `near`: chooses cells by their centres."""
     kinds = np.array([grid.GetCellType(c) for c in range(grid.GetNumberOfCells())])
     solid = np.isin(kinds, (vtk.VTK_TETRA, vtk.VTK_WEDGE, vtk.VTK_PYRAMID))
     kept = solid & gallery.behind(grid, normal, at) & near(gallery.centres(grid))

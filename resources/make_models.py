@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Make the sample models in resources/models/ (always the same bytes).
+"""Makes the sample models in resources/models/ (always the same bytes).
 
     make_models.py [FOLDER]   (freecad-python3 makes the CAD shape)
 """
@@ -118,7 +118,7 @@ def ears(outline, holes=()):
 
 
 def arc(centre, radius, begin, end, segments):
-    """Points on a circle from one angle to another (degrees), both ends included."""
+    """Returns points on a circle from one angle to another (degrees), both ends included."""
     angles = [math.radians(begin + (end - begin) * k / segments) for k in range(segments + 1)]
     return [(centre[0] + radius * math.cos(t), centre[1] + radius * math.sin(t)) for t in angles]
 
@@ -129,7 +129,7 @@ def circle(centre, radius):
 
 # ------------------------------------------------------------------ solids
 def add_plate(surface, outline, holes, place, thickness, open_edges=()):
-    """A plate with holes: `place(u, v, w)` puts it into space, w across the plate; (u, v, w) is a
+    """Adds a plate with holes: `place(u, v, w)` puts it into space, w across the plate; (u, v, w) is a
     right-handed frame. The walls over `open_edges` (numbers of outline edges) are left out."""
     rounded = [[tuple(round(c, 9) for c in p) for p in ring] for ring in [outline] + list(holes)]
     outline, holes = rounded[0], rounded[1:]
@@ -152,7 +152,7 @@ def chamfered_leg(length, width, chamfer):
 
 
 def bracket():
-    """A bent bracket of 80 x 50 x 60 with two bolt holes in each leg; bend radii 8 and 18."""
+    """Returns a bent bracket of 80 x 50 x 60 with two bolt holes in each leg; bend radii 8 and 18."""
     surface, width, thickness, inner, hole = Surface(), 50, 10, 8, 5.5
     outer = inner + thickness
     base = chamfered_leg(80 - outer, width, 10)
@@ -181,7 +181,7 @@ def box():
 
 
 def open_box():
-    """A box that lacks one triangle."""
+    """Returns a box that lacks one triangle."""
     surface = box()
     del surface.triangles[-1]
     return surface
@@ -194,7 +194,7 @@ def plate_with_hole():
 
 
 def sphere():
-    """Unit sphere: an icosahedron subdivided three times."""
+    """Returns the unit sphere: an icosahedron subdivided three times."""
     surface = Surface()
     g = (1 + math.sqrt(5)) / 2
     corners = [(-1, g, 0), (1, g, 0), (-1, -g, 0), (1, -g, 0), (0, -1, g), (0, 1, g),
@@ -257,7 +257,7 @@ FREECAD = "/usr/lib/freecad/lib"
 
 
 def write_flange(path):
-    """A CAD shape: a flange with four holes and a fillet, by FreeCAD; millimetres."""
+    """Writes a CAD shape by FreeCAD: a flange with four holes and a fillet, in millimetres."""
     sys.path.append(FREECAD)
     import FreeCAD
     import Part
@@ -277,8 +277,8 @@ def write_flange(path):
 
 
 def write_wires_in_box(path):
-    """A CAD shape: a box with a circle inside, a needle that sticks out of its top, and a point, which belong to
-    no face; by FreeCAD."""
+    """Writes a CAD shape by FreeCAD: a box with a circle inside, a needle that sticks out of its top, and a point
+    inside; none of the three belongs to a face."""
     sys.path.append(FREECAD)
     import FreeCAD
     import Part
@@ -289,7 +289,7 @@ def write_wires_in_box(path):
 
 
 def write_coil_in_box(path):
-    """A CAD shape: a box with a wire of five turns inside, whose ends are straight and reach the box; by FreeCAD."""
+    """Writes a CAD shape by FreeCAD: a box with a wire of five turns inside, whose straight ends reach a side."""
     sys.path.append(FREECAD)
     import FreeCAD
     import Part

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Write the tables of options, one for each group, into their page, mesher/doc/options.md.
+"""Writes the tables of options, one for each group, into their page, mesher/doc/options.md.
 
     options_page.py PROGRAM [PAGE]
 """
@@ -23,7 +23,7 @@ def code(text, words=()):
 
 
 def range_of(option):
-    """Returns a range with two ends, unless its numbers are explained one by one."""
+    """Returns the range of an option as text; empty if it has no upper end, or if the help explains each number."""
     low, high = option["low"], option["high"]
     if option["kind"] not in ("number", "count") or high is None or high > 1e9:
         return ""

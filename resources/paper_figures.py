@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The figures 1 to 4 of the paper, and the ten pictures of how it works, from the traces of runs.
+"""Draws figures 1 to 4 of the paper, and the ten pictures of the page "How it works", from the traces of runs.
 
     xvfb-run -a resources/paper_figures.py [--only NAME...] [--into FOLDER]
 
@@ -27,7 +27,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 COLOURS = 160
 TET, PATCH, COLLAR_SURFACE, SEGMENT, BALL = range(5)
 OUTSIDE, REGION, RIPPED, IN_STAR, IN_BOOK, THIN = range(6)
-# By BallReason in collarmesh/trace.h.
+# Colours of balls, by BallReason in collarmesh/trace.h.
 REASONS = {1: (0.55, 0.60, 0.66), 3: (0.93, 0.66, 0.32), 4: (0.36, 0.56, 0.78), 5: (0.50, 0.72, 0.47),
            6: (0.80, 0.46, 0.46), 7: (0.62, 0.53, 0.76)}
 PLAIN, GOLD = (0.80, 0.84, 0.90), (0.96, 0.74, 0.30)
@@ -42,13 +42,13 @@ VIEW = (0.9, -2.2, 0.9)
 # Runs
 
 def chisel(path):
-    """A prism, 1.5 long, whose cross-section ends in an edge of 35 degrees."""
+    """Writes a prism, 1.5 long, with an edge of 35 degrees."""
     points = [(x, y, z) for y in (0, 1.5) for x, z in PROFILE]
     write_off(path, points, [(0, 1, 2, 3), (7, 6, 5, 4), (0, 4, 5, 1), (1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 4, 0)])
 
 
 def planes(path):
-    """A box with two planes inside that cross in a segment at 30 degrees, each of two pieces."""
+    """Writes a box with two planes inside, which cross in a segment at 30 degrees. The segment divides each plane."""
     low, high, half = (-1, -1, -0.6), (1, 1, 0.6), np.tan(np.radians(15))
     points = [[(low, high)[k >> axis & 1][axis] for axis in range(3)] for k in range(8)]
     facets = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
@@ -63,7 +63,7 @@ def planes(path):
 
 
 def trace(source, *options):
-    """Returns the steps of a run: stages and grids."""
+    """Returns the steps of a run, as pairs of a stage and a grid."""
     folder = pathlib.Path(f"trace_of_{pathlib.Path(source).stem}_{len(options)}")
     if not folder.exists():
         subprocess.run(["collarmesh", source, "-o", "mesh.vtu", "--quiet",
@@ -150,7 +150,7 @@ def by_angle(grid):
 
 
 def sliced(grid, colours, y=0.75):
-    """Returns the cells that a plane cuts, with a colour for each state."""
+    """Returns actors for the plane's cuts of cells, with a colour for each state."""
     plane = vtk.vtkPlane()
     plane.SetOrigin(0, y, 0)
     plane.SetNormal(0, 1, 0)
@@ -170,7 +170,7 @@ def sliced(grid, colours, y=0.75):
 
 
 def outline(y=0.75):
-    """Returns the cross-section of the chisel."""
+    """Returns an actor for the outline of the chisel's cross-section."""
     points, lines = vtk.vtkPoints(), vtk.vtkCellArray()
     for x, z in PROFILE:
         points.InsertNextPoint(x, y, z)
@@ -190,8 +190,8 @@ def collars(grid, axis=1, at=10.0):
 # Pictures
 
 def draw(path, *panels, size=(2800, 1400), view=VIEW, zoom=1.25, around=None):
-    """Panels side by side, each a list of actors; drawn twice as large as they are kept. `around`: a place and how much
-    of its surroundings to show, else everything."""
+    """Draws panels side by side, each a list of actors, twice as large as they are saved. `around`: the place in the
+    middle, and half the height that is shown; without it everything is shown."""
     window = vtk.vtkRenderWindow()
     window.SetOffScreenRendering(True)
     window.SetMultiSamples(8)
@@ -261,7 +261,7 @@ def figure_3(path):
 
 
 def inside_surface(grid):
-    """Returns the part of the collars' surface at cells in the region."""
+    """Returns the triangles of the collars' surface whose corners all belong to cells in the region."""
     inner, surface = cells(grid, TET, REGION), cells(grid, COLLAR_SURFACE)
     known = {inner.GetPoint(p) for p in range(inner.GetNumberOfPoints())}
     keep = [c for c in range(surface.GetNumberOfCells())
@@ -270,7 +270,7 @@ def inside_surface(grid):
 
 
 def figure_4(path):
-    """Draws a surface among Voronoi cells; the cells restricted to it; the triangles restricted to it."""
+    """Draws the surface of the balls' union; the Voronoi cells restricted to it; the restricted triangles."""
     grid = last(the_run(), "rip")
     spheres = vtk.vtkAppendPolyData()
     found = cells(grid, BALL)

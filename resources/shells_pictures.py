@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The picture of the page on shells: a panel with ribs, a planar domain, and faces of a solid.
+"""Draws the picture of the page on shells: a panel with ribs, a planar domain, and faces of a solid.
 
     xvfb-run -a resources/shells_pictures.py [FOLDER]
 
@@ -20,7 +20,7 @@ import vtk  # noqa: E402
 
 
 def ribbed_panel(path):
-    """A vaulted panel with three ribs below it, which it meets in T-junctions, as a .mesh file."""
+    """Writes a vaulted panel with three ribs below it, which it meets in T-junctions, as a .mesh file."""
     points, triangles = [], []
 
     def add(tag, point, columns, rows):

@@ -51,7 +51,7 @@ def now(process=None):
 
 
 class Watched(task_panel.MeshTaskPanel):
-    """Records the times at which the table got its numbers."""
+    """A panel that records the times at which its table gets numbers."""
 
     told = []
 
@@ -78,7 +78,7 @@ def complete(known, _size, presets):
 
 
 async def measured(path):
-    """Prints the number of faces, and the times from opening the panel to the chosen size's row and to all
+    """Returns the number of faces, and the times (see `now`) from opening the panel to the chosen size's row and to all
     rows."""
     shape = Part.read(str(path))
     document = FreeCAD.newDocument("part")

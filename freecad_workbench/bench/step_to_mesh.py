@@ -21,7 +21,7 @@ from femmesh import gmshtools
 from freecad import collarmesh_workbench
 
 TETS = 100_000
-NEAR = 0.15  # relative difference
+NEAR = 0.15  # relative difference from TETS that is allowed
 ROUNDS = 3
 
 

@@ -1,5 +1,5 @@
 // The functions that programs look up by name when they load this module. The names contain the version,
-// because model and program must have the same version.
+// because module and program must have the same version.
 #include <memory>
 
 #include "collarmesh/brep/cad_model.h"

@@ -1,4 +1,5 @@
-"""Members of the acute families of the tests, written by the program acute_shape, for each mesher."""
+"""Members of the tests' families of shapes with acute angles, which the program acute_shape writes, as files for each
+mesher."""
 
 from __future__ import annotations
 
@@ -9,13 +10,13 @@ from pathlib import Path
 
 from inputs import Corner, classified
 
-Loop = tuple[int, ...]   # corners; a loop of one corner is a point, one of two corners a segment inside the facet
+Loop = tuple[int, ...]   # corners; a loop of one corner is a point, a loop of two is a segment inside the facet
 
 
 @dataclass
 class Part:
-    """A .poly file. Facets are lists of polygons; the first polygon has at least three corners, unless the
-    facet is a lone segment."""
+    """The content of a .poly file. Facets are lists of polygons; the first polygon has at least three corners,
+    unless the facet is a lone segment."""
     points: list[Corner]
     facets: list[list[Loop]]
 
@@ -23,7 +24,7 @@ class Part:
 @dataclass
 class AcuteInput:
     """An input that the program acute_shape writes. `family` and `parameters` are its arguments; `copies`:
-    number of copies in a grid, 0: the shape itself."""
+    the number of copies in a grid; 0: the shape alone."""
     program: Path
     family: str
     parameters: tuple[float, ...]
@@ -32,7 +33,7 @@ class AcuteInput:
     suffix = ".poly"
     volume = diagonal = 1.0   # approximate; gives a first guess of the size for a wanted number of tets
     parts: list[Part] = field(default_factory=list)
-    small_copy: float = 0   # factor of a smaller copy beside the shape; for polylines
+    small_copy: float = 0   # scale of a smaller copy beside the shape, 0: none; polylines only
 
     @property
     def name(self) -> str:
@@ -40,7 +41,7 @@ class AcuteInput:
 
     @property
     def polygons(self) -> list[list[Loop]]:
-        """Returns the number of polygons. Call it after write()."""
+        """Returns the facets of all parts; each facet is a list of polygons. Call it after write()."""
         return [facet for part in self.parts for facet in part.facets]
 
     @property
@@ -61,8 +62,8 @@ class AcuteInput:
             out.write("0\n0\n")
 
     def write_geo(self, path: Path) -> None:
-        """Writes a file for Gmsh: curved shapes as a classified surface, others as points, lines, plane
-        surfaces and volumes."""
+        """Writes a file for Gmsh: curved shapes as triangles that Gmsh divides into patches, others as points,
+        lines, plane surfaces and volumes."""
         self._generate(path.with_suffix(""))
         if self.feature_angle > 0:
             write_stl(self.parts[0], path.with_suffix(".stl"))
@@ -120,8 +121,8 @@ def write_stl(part: Part, path: Path) -> None:
 
 
 class GeoModel:
-    """Gmsh's built-in geometry of some solids. Parts inside a solid (facets with a free border, lone
-    segments, points and segments in facets) are embedded. Numbers start at 1."""
+    """A model of some solids in Gmsh's built-in geometry. Facets with a free border, lone segments, and points and
+    segments in facets are embedded. Numbers start at 1."""
 
     def __init__(self, parts: list[Part]):
         self.lines: dict[frozenset, int] = {}
@@ -181,7 +182,7 @@ def edges(loop: Loop) -> list[Loop]:
 
 
 def closed_part(facets: list[list[Loop]]) -> list[list[Loop]]:
-    """Removes lone segments, and repeatedly all facets with a free border."""
+    """Returns the facets that are left after removing lone segments and, repeatedly, all facets with a free border."""
     shell = [facet for facet in facets if len(facet[0]) > 2]
     while True:
         uses = Counter(frozenset(edge) for facet in shell for edge in edges(facet[0]))

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Compares collarmesh with TetGen and Gmsh on shapes whose features meet at acute angles, at one size:
-whether they end, the number of tets, their angles, and the time. Prints a Markdown table."""
+"""Compares collarmesh with TetGen and Gmsh, at one size, on shapes whose features meet at acute angles: whether
+each mesher ends, the number of tets, their angles, and the time. Prints a Markdown table."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def measure_mesh(program: Path, mesh: Path) -> dict:
 
 
 def cell(mesher, shape: AcuteInput, folder: Path, program: Path) -> str:
-    """Returns the mesher's result for the shape, or the reason of its failure."""
+    """Returns the table entry of a mesher and a shape: measures of the mesh, or the reason for the failure."""
     folder.mkdir(parents=True, exist_ok=True)
     mesh = folder / mesher.mesh_file
     mesh.unlink(missing_ok=True)
@@ -58,7 +58,7 @@ def cell(mesher, shape: AcuteInput, folder: Path, program: Path) -> str:
 
 
 def radius_edge(result, made: dict) -> float:
-    """Returns the largest ratio; for our meshes, outside collars."""
+    """Returns the largest radius-edge ratio of all tets; in our meshes, of the tets outside collars."""
     return (result.report["check"] if result.report else made)["max_radius_edge"]
 
 

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""How the error of a solution falls with the number of unknowns when meshes are adapted to it (`Mesh.adapt`
-with `estimated_errors` and `sizes_from_errors`), beside meshes of equal sizes: the edge of an L-shaped
-domain, Fichera's corner, and wires in a block with dolfinx; a plate with a hole and a notched bar with
-CalculiX. Then meshes that are adapted up and down many times: how much volumes, curves and names change, and
-how well edge lengths fit the sizes.
+"""Measures how the error of a solution falls with the number of unknowns, on meshes that are adapted to it
+(`Mesh.adapt` with `estimated_errors` and `sizes_from_errors`) and on meshes of uniform size: the edge of an L-shaped
+domain, Fichera's corner, and wires in a block with dolfinx; a plate with a hole and a notched bar with CalculiX.
+Then refines and coarsens meshes many times and measures how much volumes, curves and names change, and how well
+edge lengths fit the sizes.
 
-Errors are those of the energy: the root of the energy of the difference from the solution. With linear
-elements errors fall at best with the third root of the number of unknowns. Energies of the solutions come
-from elements of second order on the last mesh. Prints Markdown tables."""
+Errors are relative errors in the energy norm. With linear elements they fall at best like the number of unknowns
+to the power of -1/3. Exact energies are approximated with elements of second order on the last adapted mesh. Prints
+Markdown tables."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def fichera(collarmesh):
 
 
 def wires_in_block(collarmesh):
-    """Returns a block without two square wires that run through it: electrodes."""
+    """Returns a block with two square holes through it, in place of two wires that are electrodes."""
     points, facets = extruded([(-1, -1), (1, -1), (1, 1), (-1, 1)], 0, 0.5)
     del facets[:2]
     rims = []
@@ -75,8 +75,8 @@ def wires_in_block(collarmesh):
 
 
 def quarter_plate(collarmesh):
-    """Returns a quarter of a plate, 4 by 4 by 0.4, with a hole of 12 sides. The hole is not round, because
-    coarse and fine meshes would then have different domains."""
+    """Returns a quarter of a plate with a hole of 12 sides; the quarter is 4 by 4 by 0.4. The hole is not round,
+    because coarse and fine meshes would then have different domains."""
     arc = [(math.cos(a), math.sin(a)) for a in np.linspace(math.pi / 2, 0, 4)]
     arc[0], arc[-1] = (0, 1), (1, 0)
     return collarmesh.Complex(*extruded([(4, 0), (4, 4), (0, 4), *arc], 0, 0.4))
@@ -105,8 +105,8 @@ class Poisson:
                  gradient: Optional[Callable] = None) -> None:
         self.load, self.values, self.where, self.gradient = load, values, where, gradient
 
-    # The energy of the error is the solution's less the elements' for loads, and the elements' less the
-    # solution's for values on the boundary.
+    # Returns the energy of the error: the exact energy minus the energy of the elements if there is a load; the
+    # reverse if values are given on the boundary.
     def squared_error(self, energy: float, exact: float) -> float:
         return exact - energy if self.load else energy - exact
 
@@ -152,7 +152,7 @@ class Elasticity:
         return exact - energy
 
     def forces(self, mesh, points: Array, order: int) -> Array:
-        """Returns the force along x on each node from unit tractions on the planes `pulled`."""
+        """Returns the force along x on each node from the tractions on the planes `pulled`."""
         forces = np.zeros(len(points))
         for place, traction in self.pulled:
             at = np.flatnonzero((np.abs(points[mesh.faces][:, :, 0] - place) < 1e-9).all(1))
@@ -197,7 +197,7 @@ class Problem:
     domain: Callable
     size: float                   # target size of the first mesh
     equation: Poisson | Elasticity
-    expected_even: str            # the rate of meshes of equal sizes by theory
+    expected_even: str            # the rate of meshes of uniform size by theory
 
 
 def near(a: Array, b: float) -> Array:
@@ -249,7 +249,7 @@ def problems(folder: Path, limit: float) -> list[Problem]:
 # Loops
 
 def rate(unknowns: list[float], errors: list[float]) -> float:
-    """Returns the exponent with which errors fall, by least squares."""
+    """Returns the exponent r of errors ~ unknowns^-r, by least squares."""
     return -float(np.polyfit(np.log(unknowns), np.log(errors), 1)[0])
 
 
@@ -278,7 +278,7 @@ def study(collarmesh, problem: Problem, loops: int, first: int, growth: float, l
     passed = mesh.passed
     fine = mesh if isinstance(equation, Poisson) else with_second_order(collarmesh, mesh)
     exact = equation.solve(fine, order=2).energy
-    # The error of second order is only some percent of the last error of first order.
+    # Serves as the exact energy: its error is only some percent of that of first order on the last mesh.
     log(f"{problem.name}: energy of second order {exact:.8g}")
     even = []
     for share in (1, 0.7, 0.5, 0.35, 0.25, 0.18):
@@ -293,8 +293,8 @@ def study(collarmesh, problem: Problem, loops: int, first: int, growth: float, l
         return math.sqrt(max(squared, 0) / exact)
 
     by_size = ([s.unknowns for s in even], [error(s) for s in even])
-    # Estimates how many unknowns meshes of equal sizes, at their own rate, need for the error of the last
-    # adapted mesh.
+    # Estimates how many unknowns a mesh of uniform size needs for the error of the last adapted mesh, with the
+    # rate of the meshes of uniform size.
     last, slope = adapted[-1], rate(*by_size)
     needed = by_size[0][-1] * (by_size[1][-1] / error(last)) ** (1 / slope)
     low, high = extreme_angles(mesh)
@@ -306,7 +306,7 @@ def study(collarmesh, problem: Problem, loops: int, first: int, growth: float, l
 
 
 def extreme_angles(mesh) -> tuple[float, float]:
-    """Returns the extreme dihedral angles in degrees."""
+    """Returns the smallest and the largest dihedral angle in degrees."""
     angles = dihedral_angles(mesh.points[mesh.tets])
     return float(angles[:, 0].min()), float(angles[:, 1].max())
 
@@ -342,8 +342,8 @@ def change(now: dict, before: dict) -> float:
 
 
 def up_and_down(collarmesh, path: Path, loops: int, log) -> list[str]:
-    """Adapts a mesh again and again to sizes that are fine at a moving place, and in the end to the sizes of
-    the first mesh."""
+    """Adapts a mesh again and again to sizes that grow with the distance from a moving place, where they are small in
+    every other loop. Compares volumes, curves and names with those of the first mesh."""
     first = mesh = collarmesh.mesh(str(path))
     low, high = first.points.min(0), first.points.max(0)
     size = np.linalg.norm(high - low) / 20

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""How well default runs keep requested bounds: each acute family and each file of a corpus with several
-collar angles, radius-edge ratios and a vertex ratio. The certificate judges each mesh, and so does an independent
-program ($COLLARMESH_JUDGE), whose numbers are compared with those of the report. A silent difference is a mesh with
-exit code 0 in which the judge finds a bound exceeded, without a warning that names the option. Prints a Markdown table
-with a row for each option, then what was missed or differs."""
+"""Checks whether meshes keep the bounds that options request: meshes each acute family and each file of a corpus with
+several collar angles, radius-edge ratios and a vertex ratio. The certificate judges each mesh, and so does an
+independent program ($COLLARMESH_JUDGE). The column "judge differs" counts the meshes where its findings or numbers
+differ from those of the report, or where a collar or a warning is absent that should be there. Prints a Markdown table
+with a row for each option, then the guarantees that were missed and the differences."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class Outcome:
     warned: bool = False
     missed: list[str] = field(default_factory=list)     # guarantees, by the certificate
     differs: list[str] = field(default_factory=list)    # statements in which judge and report disagree
-    # whether no tet is thin, so that the ratio holds everywhere outside collars, by the judge
+    # whether all tets outside collars, thin ones too, keep the radius-edge ratio, by the judge
     within: bool = False
     largest: float = 0         # largest dihedral angle in collars, by the judge
 
@@ -97,7 +97,7 @@ def asked(question: tuple[str, ...], option: str, default: float) -> float:
 
 
 def judge(judging: str, case: Case, question: tuple[str, ...], mesh: Path, report: dict) -> dict | str:
-    """Returns the judge's result, or the reason of its failure."""
+    """Returns the judge's result, or the end of its output if that is not JSON."""
     check = report["check"]
     smallest_thin = min(8, report["complex"]["smallest_angle"] / 2,
                         check["min_forced_dihedral"] if check["forced_tets"] else math.inf)

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Boards with components: how the cost of an assembly grows with the number of its parts.
+"""Measures how the cost of an assembly, a board with components, grows with the number of its parts.
 
 assemblies.py [--parts 50 200 500] [--program collarmesh] [--limit 300]
 
-A board carries blocks, cylinders and housings on four feet, each of which touches it in one or four faces.
-FreeCAD writes the STEP files. The third column has the share of the time for reading and fusing the solids."""
+A board carries blocks and cylinders, which touch it in one face, and housings, which stand on it with four feet.
+FreeCAD writes the STEP files. The third column is the share of the time that reading and fusing the solids takes."""
 
 from __future__ import annotations
 

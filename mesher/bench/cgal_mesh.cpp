@@ -35,7 +35,7 @@ int main(int argc, char** argv) {
   domain.detect_features(30);
   const double size = std::strtod(argv[2], nullptr), distance = std::strtod(argv[3], nullptr);
   namespace parameters = CGAL::parameters;
-  // Bounds: the circumradii of a triangle and a tetrahedron whose edges are `size`.
+  // Bounds on circumradii: somewhat above those of a regular triangle and tetrahedron with edges `size`.
   const Criteria criteria(parameters::edge_size = size, parameters::facet_angle = 25,
                           parameters::facet_size = 0.7 * size, parameters::facet_distance = distance,
                           parameters::cell_radius_edge_ratio = 2, parameters::cell_size = 0.79 * size);

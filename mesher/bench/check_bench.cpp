@@ -1,4 +1,4 @@
-// Meshing through the library, and the certificate.
+// Benchmarks of meshing through the library, and of the certificate.
 #include <benchmark/benchmark.h>
 
 #include <span>

@@ -1,20 +1,20 @@
 #!/usr/bin/env python3
-"""How far repaired surfaces are from their inputs, by other means than the mesher's: files are read, compared and
-measured here with numpy and scipy alone, CAD files are tessellated by FreeCAD.
+"""Measures how far repaired surfaces are from their inputs, without the mesher's code: this script reads, compares and
+measures files with numpy and scipy alone, and FreeCAD tessellates CAD files.
 
 compare_repaired.py FILES... [--program collarmesh] [--limit 30] [--samples 20000] [--options '--repair-tolerance 1e-4']
 
-Each file goes through `collarmesh repair`. For the result and the input, samples spread over the triangles
-are compared with the nearest triangles of the other, both ways, in shares of the diagonal. Parts of the input
-inside the result (winding number above 3/4) are left out, because repair is meant to remove walls inside.
-"told" is the larger of the distances that the program reports.
+Each file goes through `collarmesh repair`. Distances are measured from samples on the triangles of the result to
+the triangles of the input and the other way round, relative to the diagonal of the input. Samples of the input inside
+the result (winding number above 3/4) are left out, because repair is meant to remove walls inside. "told" is the
+larger of the two distances that the program reports.
 
-Volumes: the result's is that of its triangles (with several regions, the reported one); the input's is that
-of the places where the winding number is above 1/2 or below -1/2 (surfaces: random points of the box; CAD
-files: OpenCASCADE's volume of the solids). "differs" is the share of the input's volume in which the two
-disagree, at the same points. Bodies are the input's connected parts that are closed; a body has changed if a
-point half-way between two of its opposite sides is inside before the repair and outside after it, or the
-reverse. Rows come with the largest distance first."""
+The result's volume is what its triangles enclose (with several regions, the sum of the reported volumes). The input's
+volume is where the winding number is above 1/2 or below -1/2, estimated at random points of its box; for CAD files it
+is OpenCASCADE's volume of the solids. "differs" is the volume in which input and result disagree, estimated at these
+points, relative to the input's volume. Bodies are the input's connected parts that are closed; a body has changed if a
+point half-way between two of its opposite sides is inside before the repair and outside after it, or the reverse.
+Rows are sorted by distance, largest first."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def fans(polygons: list[list[int]]) -> list[tuple[int, int, int]]:
 
 
 def clipped(polygon: list[int], points: np.ndarray) -> list[tuple[int, int, int]]:
-    """Returns triangles of a polygon that need not be convex, by cutting off ears as long as there are any."""
+    """Returns the triangles of a polygon: a fan of up to four corners; else ears, and a fan when no ear is left."""
     if len(polygon) <= 4 and len(polygon) > 2:
         return fans([polygon])
     rest, triangles = list(polygon), []
@@ -133,7 +133,7 @@ def volume(triangles: np.ndarray) -> float:
 
 
 def samples_of(triangles: np.ndarray, count: int, random: np.random.Generator) -> np.ndarray:
-    """Returns random points, distributed by area, and the centres of triangles."""
+    """Returns `count` random points, distributed by area, and the centres of up to `count` triangles."""
     share = areas(triangles)
     chosen = triangles[random.choice(len(triangles), count, p=share / share.sum())]
     weights = random.dirichlet((1, 1, 1), count)
@@ -163,8 +163,8 @@ def to_triangles(p: np.ndarray, t: np.ndarray) -> np.ndarray:
 
 
 class Nearest:
-    """Measures distances to triangles. The triangles with the nearest centres give a bound for each point;
-    then all triangles whose circumscribed ball is within the bound are measured."""
+    """Distances to triangles. The triangles with the nearest centres give each point an upper bound; then all
+    triangles that may be nearer than this bound are measured."""
 
     def __init__(self, triangles: np.ndarray, diagonal: float):
         self.triangles = self.divided(triangles, diagonal / 50)
@@ -174,7 +174,7 @@ class Nearest:
 
     @staticmethod
     def divided(triangles: np.ndarray, longest: float) -> np.ndarray:
-        """Halves triangles at the longest side until all sides are short."""
+        """Halves triangles at their longest side until no side is longer than `longest`."""
         done = []
         while len(triangles):
             sides = np.linalg.norm(triangles - np.roll(triangles, -1, 1), axis=2)
@@ -196,8 +196,8 @@ class Nearest:
         return min(bound, to_triangles(np.repeat(point[None], len(near), 0), near).min()) if len(near) else bound
 
     def farthest(self, points: np.ndarray, does_not_count: Callable[[np.ndarray], bool]) -> float:
-        """Returns the largest distance. Points with the largest bounds come first, so most others need not be
-        measured."""
+        """Returns the largest distance of the points that count. Points with large bounds come first, so most others
+        need not be measured."""
         bounds = self.bounds(points)
         most = 0.0
         for k in np.argsort(-bounds):
@@ -210,8 +210,8 @@ class Nearest:
 
 
 def winding_numbers(triangles: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """Returns winding numbers by A. Van Oosterom and J. Strackee, 1983. Computes coordinate by coordinate,
-    which is several times faster."""
+    """Returns winding numbers by A. Van Oosterom and J. Strackee, 1983. Computes with arrays of x, y and z, which is
+    faster than with arrays of vectors."""
     corners = np.ascontiguousarray(triangles.transpose(1, 2, 0))
     result = np.empty(len(points))
     for i, p in enumerate(points):
@@ -243,7 +243,7 @@ def read_given(path: Path, folder: Path) -> Given:
 
 
 def closed_parts(triangles: np.ndarray, diagonal: float) -> list[np.ndarray]:
-    """Returns the parts connected by edges that use each edge an even number of times."""
+    """Returns the parts, connected by edges, in which each edge belongs to an even number of triangles."""
     points = np.unique(np.round(triangles.reshape(-1, 3) / (1e-7 * diagonal)
                                 ).astype(np.int64), axis=0, return_inverse=True)[1]
     corners = points.reshape(-1, 3)
@@ -258,8 +258,8 @@ def closed_parts(triangles: np.ndarray, diagonal: float) -> list[np.ndarray]:
 
 
 def place_inside(part: np.ndarray) -> np.ndarray | None:
-    """Returns the point halfway from the part's largest triangle to the opposite side, inwards; none for a
-    part without thickness."""
+    """Returns the point halfway from the part's largest triangle inwards to the opposite side, or None if there is no
+    opposite side."""
     largest = part[areas(part).argmax()]
     normal = np.cross(largest[1] - largest[0], largest[2] - largest[0])
     way = -normal / np.linalg.norm(normal) * (1 if volume(part) > 0 else -1)
@@ -277,7 +277,7 @@ def place_inside(part: np.ndarray) -> np.ndarray | None:
 
 
 def changed_bodies(given: np.ndarray, repaired: np.ndarray, diagonal: float) -> tuple[int, list[np.ndarray]]:
-    """Returns the number of closed parts, and a place in each part whose inside has changed."""
+    """Returns the number of closed parts, and a point in each changed part (of the first 500) that shows the change."""
     parts = closed_parts(given, diagonal)
     places = [p for p in (place_inside(part) for part in parts[:500]) if p is not None]
     if not places:
@@ -313,11 +313,11 @@ class Row:
 
     @property
     def silent(self) -> bool:
-        """Returns whether the distance is larger than reported. (Tessellations of CAD files may differ by
-        their tolerance.)"""
+        """Returns whether a distance is larger than reported by more than the errors of this comparison, such as
+        those of tessellations of CAD files."""
         own = 5e-4 if self.solids is not None else 2e-6
         of_repaired = 0.0 if any(
-            "filled" in message for message in self.messages) else self.of_repaired   # not measured there
+            "filled" in message for message in self.messages) else self.of_repaired   # not reported there
         return max(of_repaired, self.of_input) > 1.05 * self.told + own
 
 
@@ -339,8 +339,8 @@ def repair(path: Path, folder: Path, options: argparse.Namespace) -> tuple[np.nd
 
 def input_volume(given: Given, repaired: np.ndarray, count: int,
                  random: np.random.Generator) -> tuple[float, float, float]:
-    """Returns the input's volume, its standard deviation, and the share of the volume in which input and
-    result differ."""
+    """Returns the input's volume, the standard deviation of this estimate, and the volume in which input and result
+    differ, relative to the input's."""
     corners = given.triangles.reshape(-1, 3)
     low, high = corners.min(0), corners.max(0)
     most = max(len(given.triangles), len(repaired))
@@ -377,7 +377,7 @@ def compare(path: Path, options: argparse.Namespace) -> Row:
 
 
 def print_doubts(rows: list[Row]) -> None:
-    """Returns results to look at: distances beyond the reported ones, changed bodies, volumes that differ."""
+    """Prints results to look at: distances beyond the reported ones, changed bodies, volumes that differ."""
     for row in rows:
         doubts = ["farther off than told"] if row.silent else []
         if row.changed:

@@ -1,5 +1,5 @@
-"""The command line of programs that compare meshers on the box and on parts of a corpus, at equal numbers of
-tets."""
+"""The command line of the scripts that compare meshers, at equal numbers of tets, on the box and on parts of a
+corpus."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Meshes every input that starts from constrained tetrahedra: does each valid complex give a mesh within a bound on CPU
-time, and how many tets miss the bounds on angles? Beside it TetGen's constrained tetrahedra (-p, without quality) of
-the same complex. Prints Markdown tables; a log of one JSON line for each input lets an interrupted run go on."""
+"""Meshes inputs with `--start constrained`: does each valid complex give a mesh within a limit of CPU time, and how
+many tets miss the bounds on angles? TetGen makes constrained tetrahedra (-p, without bounds on quality) of the same
+complexes. Prints Markdown tables; a log of one JSON line for each input lets an interrupted run go on."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from processes import Measured, ProgramFailed, run, run_limited
 from tables import machine, seconds, table
 
 read_suffixes = {".off", ".obj", ".stl", ".ply", ".poly", ".smesh", ".msh", ".step", ".stp", ".brep", ".iges", ".igs"}
-bounds = (8, 150)        # degrees
+bounds = (8, 150)        # on dihedral angles, in degrees
 allowed_memory = 8 << 30
 on_shapes = {"thin_angles", "collar_dihedral", "radius_edge"}   # guarantees that the start may miss
 complexes = (0, 5, 6, 7)  # exit codes of a run whose input is a valid complex
@@ -44,7 +44,7 @@ def unpacked(path: Path, folder: Path) -> Path:
 
 
 def angles_of(path: Path) -> np.ndarray:
-    """Returns the smallest and the largest angle of each tet in a Medit file."""
+    """Returns the smallest and the largest dihedral angle of each tet in a Medit file, in degrees."""
     text = path.read_text()
 
     def rows(keyword: str, width: int) -> np.ndarray:
@@ -57,7 +57,7 @@ def angles_of(path: Path) -> np.ndarray:
 
 
 def measure(program: Path, path: Path, cpu_limit: int, peer_limit: float) -> dict:
-    """Returns the measures of one input."""
+    """Meshes one input. Returns what was measured, with TetGen's measures if the complex is valid."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         source = unpacked(path, folder)
@@ -100,7 +100,7 @@ def tetgen(program: Path, source: Path, folder: Path, limit: float) -> dict:
 
 
 def summary(rows: list[dict], cpu_limit: int) -> str:
-    """Returns the table over the inputs whose complex is valid."""
+    """Returns the table of counts and medians over the inputs whose complex is valid."""
     valid = [row for row in rows if row["exit"] in complexes or row["exit"]
              < 0 or "near to each other" in row.get("message", "")]
     meshed = [row for row in valid if "tets" in row]

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Every valid part of a corpus without acute creases, meshed at a twenty-fifth of its diagonal, beside
-TetGen making as many tetrahedra (or as few as it can: it keeps every triangle of the surface).
+"""Meshes the valid parts of a corpus that have no acute creases, at a size of 1/25 of the diagonal, and with TetGen at
+a size that gives as many tetrahedra (or as few as it can make: it keeps every triangle of the surface).
 
-Prints a Markdown table of medians of whole programs' CPU seconds; ours reads, meshes, certifies and
-writes. Ratios compare CPU seconds per tetrahedron: above 1 we are faster."""
+Prints a Markdown table of medians of whole programs' CPU seconds; ours reads, meshes, certifies and writes. Ratios
+compare CPU seconds per tetrahedron: above 1 we are faster. The last ratio compares CPU seconds of whole runs, ours
+without the certificate."""
 
 from __future__ import annotations
 
@@ -31,7 +32,7 @@ header = ["input", "triangles or facets", "tets", "CPU s", "refinement s", "TetG
 class CorpusFile:
     """A file of the corpus that both programs read unchanged."""
     path: Path
-    polygons: range           # range of the number of polygons, from the manifest
+    polygons: range           # its length is the number of polygons, from the manifest
     volume: float = 1
     diagonal: float = math.inf
     suffix: str = field(init=False)

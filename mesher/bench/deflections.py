@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""How far thin parts bend under their own weight by CalculiX, at default options, with elements of both
-orders: a tube and a strip clamped at one end, the roof of Scordelis and Lo, and a spring, beside Gmsh's
-meshes (HXT) at the same size and the deflections of beam and shell theory. Stiffness grows with the third
-power of a thin wall's thickness, so it shows if a mesh loses thickness. Prints a Markdown table."""
+"""Compares how far thin parts bend under their own weight with the deflections by beam and shell theory. CalculiX
+computes deflections with elements of both orders, on our meshes (with default options) and on Gmsh's (HXT) of the
+same size. The parts are a tube and a strip clamped at one end, the roof of Scordelis and Lo, and a spring. A wall's
+bending stiffness grows with the third power of its thickness, so a mesh that is too thin bends too far. Prints a
+Markdown table."""
 
 from __future__ import annotations
 
@@ -48,10 +49,10 @@ Part.Wire(helix.Edges).makePipeShell([wire], True, True).exportStep(folder + "/s
 @dataclass
 class Part:
     name: str
-    young: float            # nu is 0 everywhere, so that a clamped end causes no disturbance
+    young: float            # Poisson's ratio is 0, so that a clamped end causes no disturbance
     weight: float           # weight per unit of volume, along -z
     expected: float         # expected deflection, by theory
-    held: Callable[[Nodes], list[tuple[np.ndarray, int, int]]]   # held nodes, first and last held direction
+    held: Callable[[Nodes], list[tuple[np.ndarray, int, int]]]   # sets of nodes; first and last direction held
     looked_at: Callable[[Nodes], np.ndarray]                     # returns the nodes whose mean deflection is measured
 
 
@@ -60,14 +61,14 @@ def near(values: np.ndarray, value: float, scale: float) -> np.ndarray:
 
 
 def bent_beam(young: float, weight: float, length: float, area: float, inertia: float, shear_share: float) -> float:
-    """Returns the deflection of a beam clamped at one end, shear included (Timoshenko)."""
+    """Returns how far the weight of a beam that is clamped at one end moves the other end, with shear (Timoshenko)."""
     load, shear_modulus = weight * area, young / 2
     return load * length**4 / (8 * young * inertia) + load * length**2 / (2 * shear_share * shear_modulus * area)
 
 
 def sunk_spring(young: float, weight: float, radius: float, pitch: float, turns: float, wire: float) -> float:
-    """Returns the deflection of the upper end of a helix of round wire clamped below, by the unit load
-    theorem."""
+    """Returns how far the weight of a helix of round wire, clamped below, moves its upper end down, by the unit load
+    theorem. `wire`: the radius of the wire."""
     steps = 20000
     angle = np.linspace(0, 2 * math.pi * turns, steps + 1)
     angle = (angle[1:] + angle[:-1]) / 2
@@ -80,7 +81,8 @@ def sunk_spring(young: float, weight: float, radius: float, pitch: float, turns:
     area, inertia = math.pi * wire**2, math.pi * wire**4 / 4
     end = np.array([radius * math.cos(2 * math.pi * turns), radius * math.sin(2 * math.pi * turns), pitch * turns])
     down = np.array([0.0, 0.0, -1.0])
-    # The weight of the length beyond each place, and its moment about the place.
+    # For each piece of the wire: the number of pieces from it to the free end, their centroid, and the moment of
+    # their weight about the piece.
     beyond = np.cumsum(np.ones(steps)[::-1])[::-1]
     centroid = np.cumsum(centre[::-1], 0)[::-1] / beyond[:, None]
     moment = np.cross(centroid - centre, down) * (weight * area * piece * beyond)[:, None]

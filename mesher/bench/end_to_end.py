@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""collarmesh beside TetGen and Gmsh HXT at the same numbers of tetrahedra, in one run.
+"""Compares collarmesh with TetGen and Gmsh HXT at the same numbers of tetrahedra, in one run.
 
 For the unit box and five parts of a corpus: each mesher's size is searched until it makes nearly the wanted
 number of tets. Then the programs run in turn, some rounds, each pinned to one core; before each run memory is
@@ -28,7 +28,7 @@ default_parts = ["joint.off", "spool.off", "plate_holes.STL", "handle.off", "ite
 
 @dataclass
 class Cell:
-    """One mesher on one input at one count: medians over the rounds, or the reason why there are none."""
+    """The runs of one mesher on one input at one number of tets, or the reason why there are none."""
     runs: list[MeshRun] = field(default_factory=list)
     triangulation: list[float] = field(default_factory=list)
     failure: str = ""
@@ -42,7 +42,7 @@ class Cell:
 
 
 def measure(meshers, surface: Surface, target: int, options, cache: SizeCache) -> dict[str, Cell]:
-    """Measures a table row for each mesher: searches the sizes, then runs the programs in turn."""
+    """Measures each mesher at a number of tets: searches the sizes, then runs the programs in turn."""
     cells = {m.name: Cell() for m in meshers}
     sizes = {}
     for mesher in meshers:
@@ -99,7 +99,7 @@ main_header = ["input", "target", "mesher", "tets", "CPU s", "tets/s", "refineme
 
 
 def ratio_row(surface: Surface, target: int, cells: dict[str, Cell]) -> list[str]:
-    """Returns the ratio of our refinement's speed to the peers', and of our time to bare triangulation."""
+    """Returns our refinement's speed relative to the peers', its time relative to the bare triangulation, and so on."""
     def speed(name: str) -> float | None:
         cell = cells.get(name)
         return None if cell is None or cell.failure else cell.tets / cell.median("refinement_cpu")

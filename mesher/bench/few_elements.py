@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""How many elements CAD files get at a size, and how near they are to the exact shape: collarmesh with its defaults
-beside Gmsh (HXT), both at a twentieth of the diagonal, with elements of the first and of the second order.
+"""Compares how many elements meshes of CAD files have, and how near the meshes are to the exact shapes: collarmesh with
+its defaults and Gmsh (HXT), both at a twentieth of the diagonal, with elements of the first and of the second order.
 
-Distances are relative to the diagonal. They lead from points on the mesh's outer faces (curved ones by their
-six nodes) to a dense tessellation by OpenCASCADE (FreeCAD's Shape.tessellate, with an error of 1e-4), and
-from its vertices to the mesh's outer faces. The tessellation has the walls between solids, but the outer
-faces of a conforming mesh do not, so walls count as distant. Volumes are those of all solids together, beside
-OpenCASCADE's. Angles are those between the planes of the corners. --out keeps every run, and a run that it
-holds is not made again."""
+Distances are relative to the diagonal. They are measured from points on the mesh's outer faces (which are curved with
+six nodes) to a dense tessellation by OpenCASCADE (FreeCAD's Shape.tessellate, with an error of 1e-4), and from the
+vertices of the tessellation to the mesh's outer faces. The tessellation has the walls between solids, but the outer
+faces of a conforming mesh do not, so points on walls count as distant. Volumes of all solids together are compared
+with OpenCASCADE's. Angles are the dihedral angles of the straight tets between the corners. --out keeps every run, and
+a run that it holds is not made again."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ points, triangles = shape.tessellate(float(sys.argv[3]) * shape.BoundBox.Diagona
 numpy.savez(sys.argv[2], volume=shape.Volume, points=[tuple(p) for p in points], triangles=triangles, \
 diagonal=shape.BoundBox.DiagonalLength)
 """
-# Sides and corners of a tetrahedron's faces, and the node between each two corners (VTK's order).
+# The corners of a tetrahedron's faces, and the mid-edge node between each two corners (VTK's order).
 faces = ((1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1))
 middles = {(0, 1): 4, (1, 2): 5, (0, 2): 6, (0, 3): 7, (1, 3): 8, (2, 3): 9}
 
@@ -59,9 +59,9 @@ class Row:
     points: int = 0
     smallest: float = math.nan  # dihedral angle, degrees
     largest: float = math.nan
-    to_shape: float = math.nan  # largest distance, relative to the diagonal
-    to_mesh: float = math.nan
-    volume_off: float = math.nan   # relative difference, of all solids together
+    to_shape: float = math.nan  # largest distance of the mesh from the shape, relative to the diagonal
+    to_mesh: float = math.nan   # the reverse
+    volume_off: float = math.nan   # relative difference of all solids' volume
 
 
 @dataclass
@@ -92,7 +92,7 @@ class Triangles:
 
 
 def lattice(n: int) -> tuple[np.ndarray, np.ndarray]:
-    """Returns the barycentric coordinates of a triangle cut into n * n ones, and their corners."""
+    """Cuts a triangle into n * n triangles. Returns the barycentric coordinates of points, and corners of triangles."""
     index, points = {}, []
     for i in range(n + 1):
         for j in range(n + 1 - i):
@@ -125,15 +125,15 @@ def boundary(points: np.ndarray, tets: np.ndarray, n: int = 4) -> Triangles:
 
 
 def volume_of(points: np.ndarray, tets: np.ndarray) -> float:
-    """Returns the volume of curved elements, extrapolated from two divisions of their faces; the error is
-    proportional to the square of the pieces' size."""
+    """Returns the volume of curved elements. Extrapolates it from two divisions of the outer faces, because the error
+    of a division is proportional to the square of its triangles' size."""
     points = points - points.mean(0)
     coarse, fine = (abs(boundary(points, tets, n).volume()) for n in (2, 4))
     return (4 * fine - coarse) / 3
 
 
 def reference(path: Path, folder: Path) -> tuple[Triangles, float, float] | None:
-    """Returns the dense tessellation, the diagonal and the volume."""
+    """Returns the dense tessellation, the diagonal and the volume; None if OpenCASCADE fails."""
     kept = folder / (path.name + ".npz")
     if not kept.exists():
         part = kept.with_suffix(".part.npz")

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""A Poisson problem with a known solution on our meshes and on TetGen's and Gmsh's of the same size: errors and
-condition number of the stiffness matrix, by one solver (`poisson`), on the box, on parts of a corpus and on two
-domains with acute angles. Prints a Markdown table."""
+"""Solves a Poisson problem with a known solution, by one solver (`poisson`), on meshes by collarmesh, TetGen and Gmsh
+with equal numbers of tets: errors, and condition number of the stiffness matrix. The domains are the box, parts of a
+corpus and two shapes with acute angles. Prints a Markdown table."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tables import machine, si, table
 from tuning import SizeCache, size_for
 
 default_parts = ["cross.off", "joint.off", "spool.off"]
-acute = [("wedge", (20, 1)), ("fan", (8, 0))]   # families of the tests, with their angle or number of sheets
+acute = [("wedge", (20, 1)), ("fan", (8, 0))]   # families of the tests, with their parameters
 header = ["input", "mesher", "tets", "error in L2", "of the gradient", "condition number"]
 
 

@@ -54,7 +54,7 @@ def main() -> int:
     gmsh.initialize(["gmsh"])
     try:
         mesh(sys.argv[1], sys.argv[2], int(sys.argv[3]) if len(sys.argv) > 3 else 1)
-    except Exception as error:   # the module raises plain ones
+    except Exception as error:   # the module raises no type of its own
         print(f"error: {error}")
         return 1
     finally:

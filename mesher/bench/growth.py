@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Measures time against the number of acute features and against their spread.
-creases: increasing numbers of wedges and fans in grids, and of teeth of a comb. spread: a small wedge above a
-large one, with decreasing size. curves: a cube with ever shorter edges along its own edges, or along a
-segment across it, and nowhere else. Prints Markdown tables; with --plot FOLDER also draws them (matplotlib)."""
+"""Measures how time grows with the number of acute features, with the ratio of their sizes, and with short edges.
+creases: increasing numbers of wedges and fans in grids, and of teeth of a comb. spread: a large wedge with ever
+smaller wedges above it. curves: a cube with ever shorter mesh edges along its own edges, or along a segment across
+it, and nowhere else. Prints Markdown tables; with --plot FOLDER also draws the first two (matplotlib)."""
 
 from __future__ import annotations
 
@@ -40,9 +40,9 @@ class Series:
 
 
 def crease_series(program: Path, largest: int) -> list[Series]:
-    """Measures against the number of crease segments. There is one in a wedge of 40 degrees, one in a fan of
-    4 sheets (the sides of two such wedges, 40 degrees between them), one in a fan of 8 sheets (all in grids
-    of turned copies), and one at the tip of each tooth of a comb. All teeth of a comb are on two facets."""
+    """Returns series with increasing numbers of crease segments. A wedge of 40 degrees has one, a fan of 4 sheets (the
+    sides of two such wedges, 40 degrees between them) has one, a fan of 8 sheets has one; these are in grids of turned
+    copies. A comb has one at the tip of each tooth; two facets of it contain the sides of all its teeth."""
     counts = [n for k in range(1, 6) for n in (10 ** k, 3 * 10 ** k) if n <= min(largest, 100000)]
     copies = [Series(title, {n: AcuteInput(program, family, parameters, n) for n in counts if n <= most}, {})
               for title, family, parameters, most in (("wedges of 40 degrees", "wedge", (40, 1), 100000),
@@ -85,8 +85,8 @@ class Cube:
 
 
 def curve_table(program: Path, time_limit: float, folder: Path) -> str:
-    """Measures the memory for a tet and for a cell of the triangulation (of which some are outside the
-    regions), with fine curves, and for a cube meshed with one size everywhere."""
+    """Measures time and memory of cubes with fine curves, and of a cube meshed with one size everywhere. Returns a
+    table, with the memory per tet and per cell of the triangulation (which also has cells outside the regions)."""
     rows = []
     folder.mkdir(parents=True, exist_ok=True)
     fine = [2.0 ** -k for k in range(6, 13)]
@@ -151,7 +151,7 @@ def main() -> int:
     options = parser.parse_args()
     about = machine(options.build)
     pin_to_core(options.core)
-    # The largest numbers of creases take more than half of the machine's memory.
+    # The largest numbers of creases take more than half of the machine's memory, which is the default limit.
     mesher = Collarmesh(options.build / "bin" / "collarmesh", options.time_limit, ["--max-memory", "0"])
     program = options.build / "bin" / "acute_shape"
     folder = SizeCache().folder / "acute"

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""How fast this version is: appends a line to history.tsv beside this file, and draws history.svg of all lines.
+"""Measures how fast this version is: appends lines to history.tsv beside this file, and draws history.svg of all lines.
 
-Whole runs of a box by one thread, in turn with CGAL triangulating the vertices of our mesh (`triangulate_points`, where
-the build has it) and with Gmsh HXT and its optimization (where python3-gmsh is installed), CPU seconds, medians.
-Compare ratios of tets per second: they hardly depend on the machine."""
+Whole runs on a box by one thread alternate with CGAL's triangulation of our mesh's vertices (`triangulate_points`,
+where the build has it) and with Gmsh HXT with its optimization (where python3-gmsh is installed). The lines have
+medians of CPU seconds and of ratios of speeds. Compare ratios: they hardly depend on the machine."""
 
 from __future__ import annotations
 
@@ -47,13 +47,13 @@ def processor() -> str:
 
 
 def commit(root: Path) -> str:
-    """Returns the commit, with a mark if files differ from it."""
+    """Returns the commit, with a "+" if files differ from it."""
     told = subprocess.run(["git", "describe", "--always", "--dirty=+"], cwd=root, capture_output=True, text=True)
     return told.stdout.strip() or "unknown"
 
 
 def speed_of_triangulation(program: Path, mesh: Path, folder: Path, time_limit: float) -> float:
-    """Returns the speed in cells per second."""
+    """Returns the speed of CGAL's triangulation of a mesh's vertices, in finite cells per CPU second."""
     told = re.search(r"(\d+) finite cells, ([\d.]+) s", run([str(program), str(mesh)], folder, time_limit).output)
     return int(told.group(1)) / float(told.group(2))
 

@@ -27,7 +27,7 @@ header = ["input", "mesher", "tets", "smallest", "1st percentile", "mean", "larg
 def dihedral_angles(points: np.ndarray, tets: np.ndarray) -> np.ndarray:
     """Returns dihedral angles in degrees, a row of six per tet."""
     corners = points[tets]
-    normals = []   # normal of the face opposite each corner, all outwards or all inwards
+    normals = []   # outward unit normal of the face opposite each corner
     for opposite in range(4):
         a, b, c = (corners[:, k] for k in range(4) if k != opposite)
         n = np.cross(b - a, c - a)

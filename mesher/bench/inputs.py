@@ -70,7 +70,7 @@ class Surface:
             out.write("endsolid surface\n")
 
     def write_geo(self, path: Path) -> None:
-        """Writes a .geo file for Gmsh: the box as a solid, other inputs as a classified surface."""
+        """Writes a .geo file for Gmsh: the box as a solid, other inputs as triangles that Gmsh divides into patches."""
         if self.name == "box":
             path.write_text('SetFactory("OpenCASCADE");\nBox(1) = {0, 0, 0, 1, 1, 1};\n')
             return
@@ -87,7 +87,8 @@ class Surface:
 
 
 def classified(stl: str) -> str:
-    """Returns a Gmsh model: the solid in a triangulated surface whose patches end at angles above 30 degrees."""
+    """Returns the text of a Gmsh model: the solid in a triangulated surface, with patches that end at angles above 30
+    degrees."""
     return (f'Merge "{stl}";\nClassifySurfaces{{30*Pi/180, 1, 1, Pi}};\nCreateGeometry;\n'
             "Surface Loop(1) = Surface{:};\nVolume(1) = {1};\n")
 
@@ -136,14 +137,14 @@ def _read_stl(path: Path) -> Surface:
 
 
 def box() -> Surface:
-    """The unit cube."""
+    """Returns the unit cube."""
     points = [(float(k & 1), float(k >> 1 & 1), float(k >> 2)) for k in range(8)]
     polygons = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
     return Surface("box", points, polygons)
 
 
 def skew_lines(points_per_line: int) -> Surface:
-    """The unit cube with loose points, evenly spaced, on two skew lines inside it. Every point of
+    """Returns the unit cube with loose points, evenly spaced, on two skew lines inside it. Every point of
     one line is a Delaunay neighbour of every point of the other: n^2 tetrahedra before refinement."""
     surface = box()
     surface.name = f"skew_lines_{points_per_line}"
@@ -157,7 +158,7 @@ def skew_lines(points_per_line: int) -> Surface:
 
 
 def sphere(frequency: int) -> Surface:
-    """The unit sphere as 20 frequency^2 triangles: an icosahedron's faces cut evenly, pushed out."""
+    """Returns the unit sphere as 20 frequency^2 triangles: an icosahedron's faces cut evenly, pushed out."""
     g = (1 + math.sqrt(5)) / 2
     corners = [(s * 1.0, t * g, 0.0) for s in (-1, 1) for t in (-1, 1)]
     corners = [c[a:] + c[:a] for a in range(3) for c in corners]

@@ -1,4 +1,4 @@
-// The Delaunay kernel compared with CGAL's: the same points in the same order.
+// Compares the Delaunay kernel with CGAL's, with the same points in the same order.
 #include <CGAL/Delaunay_triangulation_3.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <benchmark/benchmark.h>
@@ -26,8 +26,8 @@ Box surrounding_box() {
   return box;
 }
 
-/// Walks from `cell` towards p until a cell is in conflict with it. Rounded volumes decide the way: a detour
-/// only costs time.
+/// Returns a cell in conflict with p, by walking from `cell` towards p. Rounded volumes decide the way:
+/// errors cause detours only.
 Index conflicting_cell(const Triangulation& mesh, Index cell, const Point& p) {
   FaceId entered = no_face;
   while (!mesh.in_conflict(cell, p)) {
@@ -95,8 +95,8 @@ void insertion_cgal(benchmark::State& state) {
   count_rates(state, points.size(), cells);
 }
 
-/// Returns points whose conflict zones are searched. They are in the order of a space-filling curve, too, so
-/// that the caches behave as in refinement.
+/// Returns points whose conflict zones are searched. Like the inserted points they are in the order of a
+/// space-filling curve, so that caches behave as in refinement.
 std::vector<Point> queries() { return spatially_sorted(random_points(20'000, 17)); }
 
 void conflict_zone(benchmark::State& state) {

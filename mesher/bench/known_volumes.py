@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Families of bodies whose volumes are known, at default options: how far each region's volume is off, and with how
-many elements. Most lengths are in target edge lengths, a twentieth of the diagonal, so a rod of radius 0.02 is fifty
-times thinner than the elements that are asked for.
+"""Meshes families of bodies with known volumes at default options: how far each region's volume is off, and with how
+many elements. Most lengths are in target edge lengths, a twentieth of the diagonal, so the radius 0.02 of a rod is a
+fiftieth of the target edge length.
 
-known_volumes.py write FOLDER makes the inputs: surfaces that are cut coarsely (24 edges to a circle) and finely (96),
+known_volumes.py write FOLDER makes the inputs: surfaces with 24 edges per circle (coarse) and with 96 (fine),
 complexes of several regions, and STEP files (these need FreeCAD). known_volumes.py run FOLDER meshes them and prints a
 table."""
 
@@ -30,7 +30,7 @@ side = diagonal / math.sqrt(3)   # of a cube with that diagonal
 memory_limit = 12 << 30     # bytes
 cuts = {"coarse": 24, "fine": 96}   # edges per circle
 
-# The script for FreeCAD's Python. It reads lines of "NAME EXPRESSION"; an expression makes a list of solids.
+# The script for FreeCAD's Python. It reads lines of "PATH EXPRESSION"; an expression makes a list of solids.
 make_step = """
 import sys, json, math
 sys.path += ["/usr/lib/freecad-python3/lib", "/usr/lib/freecad/lib"]
@@ -57,13 +57,13 @@ for line in sys.stdin:
 
 @dataclass
 class Family:
-    """A family of bodies: members by name. Each is written with the volumes of its regions beside it."""
+    """A folder of bodies. Beside each file is another one with the volumes of its regions."""
     folder: Path
     step: list[str] = field(default_factory=list)
     given: dict[str, list[float]] = field(default_factory=dict)
 
     def solids(self, name: str, expression: str, volumes: list[float] | None = None) -> None:
-        """Adds solids. Their volumes are OpenCASCADE's unless given, because it integrates waves badly."""
+        """Adds a STEP file. Its volumes are OpenCASCADE's unless given: OpenCASCADE integrates waves badly."""
         self.step.append(f"{self.folder / name}.step {expression}")
         if volumes:
             self.given[f"{name}.step"] = volumes
@@ -156,7 +156,7 @@ def prism(outline: list[tuple[float, float]], low: float, high: float) -> Surfac
 
 
 def wing(chord: float, span: float, around: int) -> Surface:
-    """A NACA 0012 aerofoil with a sharp trailing edge."""
+    """Returns a wing with the profile NACA 0012 and a sharp trailing edge."""
     def half(x: float) -> float:
         return 0.6 * chord * (0.2969 * math.sqrt(x) - 0.126 * x - 0.3516 * x**2 + 0.2843 * x**3 - 0.1036 * x**4)
     xs = [(1 - math.cos(math.pi * k / (around // 2))) / 2 for k in range(around // 2 + 1)]
@@ -167,7 +167,7 @@ def wing(chord: float, span: float, around: int) -> Surface:
 
 
 def screw(radius: float, height: float, pitch: float, length: float, around: int) -> Surface:
-    """A thread of triangular section between flat ends."""
+    """Returns a rod with a thread of triangular section and flat ends."""
     along = round(length / pitch * 8)
     points, polygons = [], []
     for i in range(along + 1):
@@ -188,7 +188,7 @@ def screw(radius: float, height: float, pitch: float, length: float, around: int
 
 
 def write_layers(family: Family, name: str, steps: int, heights: list[float], amplitude: float) -> None:
-    """Writes a block cut by wavy sheets; each layer is a region."""
+    """Writes a block that wavy sheets divide into layers; each layer is a region."""
     grid = [[(side * (i / steps - 0.5), side * (j / steps - 0.5)) for j in range(steps + 1)] for i in range(steps + 1)]
     flat = (0, len(heights) - 1)
     index, points, polygons, volumes = {}, [], [], []
@@ -251,7 +251,7 @@ def write(folder: Path) -> None:
             family.shells(f"tube_{r}_{cut}", [tube(r, 0.9 * r, diagonal, around)])
         for t in (0.002, 0.01, 0.05, 0.2, 0.5):
             shell = [ball(ball_radius, around), ball(ball_radius - t, around)]
-            # The inner surface bounds a hollow, so it is turned inside out.
+            # The inner surface bounds a hollow, so its orientation is reversed.
             shell[1].polygons = [q[::-1] for q in shell[1].polygons]
             family.surfaces(f"hollow_ball_{t}_{cut}", shell, [shell[0].volume - shell[1].volume])
         for r in (0.01, 0.03, 0.1, 0.3):
@@ -284,7 +284,7 @@ class Row:
 
 
 def differences(made: list[float], known: list[float]) -> float:
-    """Returns the largest relative difference of a region's volume; a missing region counts as 1."""
+    """Returns the largest relative difference of a region's volume; 1 if the number of regions is wrong."""
     if len(made) != len(known):
         return 1.0
     return max(abs(a / b - 1) for a, b in zip(sorted(made), sorted(known)))

@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""A boundary layer of heat in dolfinx, with and without layers of cells: the error for the number of unknowns.
+"""Solves for a thermal boundary layer in dolfinx, with and without layers of cells: the error against the unknowns.
 
     layer_heat.py PROGRAM MODELS [--depth 0.02]
 
-Solves -depth² Δu + u = 0 in a box of 3 x 2 x 1, with u = 1 on the floor and no flux through the other sides:
+The equation is -depth² Δu + u = 0 in a box of 3 x 2 x 1, with u = 1 on the floor and no flux through the other sides:
 u falls to 1/e within the depth. The energy of the exact solution is 6 depth tanh(1 / depth); that of finite
 elements is larger, by the square of the error in the energy norm. Meshes without layers are of two kinds: of
 one size everywhere, and with a smaller size at the floor."""

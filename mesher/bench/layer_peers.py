@@ -1,14 +1,15 @@
 #!/usr/bin/python3
-"""Boundary layers beside those of Netgen and Gmsh: what they cover, whether cells are valid, and what they cost.
+"""Compares our boundary layers with Netgen's and Gmsh's: what they cover, whether cells are valid, what they cost.
 
     layer_peers.py PROGRAM [--parts FILE...] [--only WORDS] [--size-share 20] [--limit 300]
 
-Each mesher gets the triangles of a mesh without layers at 1/20 of the diagonal. Netgen fills them and pushes layers
-into its mesh; Gmsh makes patches of them at 40 degrees, meshes these at the same size, extrudes them and fills the
-rest. All are asked for three layers on all faces, the first a tenth of the size, growth 1.2. One measure judges all
-files: `covered` is the share of the input's area where the boundary's triangle belongs to a prism, `folded`
-counts cells with a Jacobian that is not positive, `volume` compares the sum over cells with the input. Needs
-Debian's python3-netgen, python3-gmsh and python3-meshio; shapes that are STEP files need FreeCAD."""
+The peers get the surface of our mesh without layers, with a size of 1/20 of the diagonal. Netgen fills it with tets
+and pushes layers into them; Gmsh divides it into patches at edges above 40 degrees, meshes these at the same size,
+extrudes them and fills the rest. All are asked for three layers on all faces, the first a tenth of the size, growth
+1.2. All files are measured in the same way: `covered` is the area of the boundary's triangles that belong to prisms,
+relative to that surface, `folded` counts cells with a Jacobian that is not positive, `volume` compares the sum over
+cells with the volume in that surface. Needs Debian's python3-netgen, python3-gmsh and python3-meshio; shapes that are
+STEP files need FreeCAD."""
 
 from __future__ import annotations
 
@@ -66,8 +67,8 @@ def by_netgen(surface: str, out: str, size: float) -> None:
             for (tag, a, b), (other, _, _) in (sides, sides[::-1]):
                 mesh.Add(meshing.Element1D([number[a], number[b]], [faces[tag], faces[other]], faces[tag]))
     mesh.GenerateVolumeMesh(meshing.MeshingParameters(maxh=size))
-    # Innermost first; each layer pushes the cells of the volume before. In a single call with all heights, cells
-    # overlap.
+    # Innermost first: each call puts a layer at the walls, into the layer of the call before. In a single call with
+    # all heights, cells overlap.
     for volume, top in enumerate(reversed(np.cumsum(heights(0.1 * size))), 1):
         mesh.BoundaryLayer(1, [float(top)], volume, [f"layer{volume}"])
     cells = collections.defaultdict(list)
@@ -96,7 +97,7 @@ def by_gmsh(surface: str, out: str, size: float) -> None:
     gmsh.model.geo.addVolume([loop])
     gmsh.model.geo.synchronize()
     gmsh.model.mesh.generate(3)
-    # Every volume cell, whatever group it is in, with the corners of first order.
+    # Take the cells of all volumes. They are of first order, so that their nodes are their corners.
     nodes, coordinates, _ = gmsh.model.mesh.getNodes()
     row = np.zeros(int(nodes.max()) + 1, int)
     row[nodes] = np.arange(len(nodes))
@@ -117,17 +118,17 @@ class Row:
     covered: float = math.nan  # percent
     folded: int = -1
     volume: float = math.nan   # percent off
-    seconds: float = math.nan  # of CPU time, for the mesh and the layers
+    seconds: float = math.nan  # CPU seconds for the mesh and the layers
 
 
 def signed(jacobians: np.ndarray) -> np.ndarray:
-    """Changes the sign of the Jacobians of one kind of cell if most are negative: programs differ in the
+    """Returns the Jacobians of one kind of cell, with the opposite sign if most are negative: programs differ in the
     order of corners."""
     return jacobians * (np.sign(np.median(jacobians)) or 1) if jacobians.size else jacobians
 
 
 def sides_of(cells: dict[str, np.ndarray]) -> dict[frozenset, tuple[str, np.ndarray]]:
-    """Returns the triangles that one cell alone has, with the kind of that cell."""
+    """Returns the triangles that only one cell has, with the kind of that cell."""
     places = {"tetra": ((0, 1, 2), (0, 1, 3), (0, 2, 3), (1, 2, 3)), "wedge": ((0, 1, 2), (3, 4, 5)),
               "pyramid": ((0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4))}
     found: dict[frozenset, tuple[str, np.ndarray]] = {}
@@ -160,8 +161,8 @@ def judge(row: Row, path: Path, area: float, volume: float) -> None:
 
 
 def volume_of_prisms(p: np.ndarray) -> float:
-    """Integrates by two points across the height and three in the triangle, exact for these products of
-    polynomials."""
+    """Returns the sum of the volumes, by integration at two points of the height times three of the triangle, which is
+    exact for prisms."""
     found = 0.0
     for z in (0.5 - math.sqrt(1 / 12), 0.5 + math.sqrt(1 / 12)):
         for x, y in ((1 / 6, 1 / 6), (2 / 3, 1 / 6), (1 / 6, 2 / 3)):
@@ -173,7 +174,7 @@ def volume_of_prisms(p: np.ndarray) -> float:
 
 
 def volume_of_pyramids(p: np.ndarray) -> float:
-    """Returns the mean over both divisions of the bases."""
+    """Returns the sum of the volumes: the mean over both ways to divide the bases into triangles."""
     halves = [np.abs(triple(p[:, j] - p[:, i], p[:, k] - p[:, i], p[:, 4] - p[:, i])).sum()
               for i, j, k in ((0, 1, 2), (0, 2, 3), (0, 1, 3), (1, 2, 3))]
     return sum(halves) / 12
@@ -186,7 +187,7 @@ def area_and_volume(points: np.ndarray, triangles: np.ndarray) -> tuple[float, f
 
 def timed(command: list[str], limit: float, folder: Path) -> tuple[float, str]:
     """Runs a command in a folder, where Netgen leaves a log. Returns its CPU seconds and, if it failed, its last
-    words."""
+    line of errors."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     try:
         made = subprocess.run(command, capture_output=True, text=True, timeout=limit, cwd=folder)

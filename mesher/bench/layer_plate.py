@@ -1,12 +1,12 @@
 #!/usr/bin/python3
-"""The flow along a flat plate in OpenFOAM, with and without boundary layers of cells, against Blasius' profile.
+"""Compares the flow along a flat plate in OpenFOAM, with and without boundary layers of cells, with Blasius' profile.
 
-    layer_plate.py PROGRAM MODELS [--viscosity 0.002]
+    layer_plate.py PROGRAM MODELS [--viscosity 0.001]
 
-Air enters a box of 3 x 2 x 1 with speed 1; the floor is the plate, the end is open, ceiling and sides slip.
-Where x is from 1.5 to 2.5, speeds, relative to those outside of the boundary layer there, are compared with
-Blasius' solution. The air displaced by the layer makes the flow outside some percent faster along the plate,
-which Blasius' solution does not contain."""
+Air enters a box of 3 x 2 x 1 with speed 1; the floor is the plate, the end is open, ceiling and sides slip. Where x
+is from 1.5 to 2.5, speeds are divided by the speed outside of the boundary layer at the same x and compared with
+Blasius' solution. The division is necessary because the layer displaces air, so that the flow outside gets some
+percent faster along the plate, which Blasius' solution does not contain."""
 
 import argparse
 import json
@@ -43,7 +43,7 @@ kinds = {"0/p": "volScalarField", "0/U": "volVectorField"}
 
 
 def blasius():
-    """Returns f' at steps of the similarity variable, by f''' = -f f'' / 2."""
+    """Returns values of the similarity variable at equal steps, and f' there, by f''' = -f f'' / 2."""
     step, state = 0.005, np.array([0.0, 0.0, 0.332057336])
     slope = lambda s: np.array([s[1], s[2], -0.5 * s[0] * s[2]])  # noqa: E731
     at, found = [0.0], [0.0]
@@ -65,7 +65,7 @@ def field(path, what="internalField"):
 
 
 def flow(case, viscosity):
-    """Runs the case. Returns the folder of the result, or none if it did not converge."""
+    """Runs the case. Returns the folder of the result, or None if it did not converge."""
     environment = {**os.environ, "WM_PROJECT_DIR": "/usr/share/openfoam", "FOAM_ETC": "/usr/share/openfoam/etc"}
     told = {**files, "constant/transportProperties": f"transportModel Newtonian; nu [0 2 -1 0 0 0 0] {viscosity};"}
     for name, text in told.items():

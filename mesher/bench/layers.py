@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Boundary layers of shapes and of real parts: what they cover, whether cells are valid, and what they cost.
+"""Measures boundary layers on shapes and on real parts: what they cover, whether cells are valid, what they cost.
 
     layers.py PROGRAM [--parts FOLDER_OR_FILE...] [--size-share 20] [--count 3] [--openfoam] [--options ...]
 
-Every shape gets layers on all faces: three of them, the first a tenth of the size. A second reading of the file, with
-numpy alone, measures the Jacobians at corners and integration points, the volumes and the angles. `--openfoam` has
-checkMesh judge each mesh, too. T-junction, airfoil and fin are STEP files that FreeCAD makes; without it they are left
-out."""
+Every shape gets layers on all faces: --count of them, the first a tenth of the size. This script reads the mesh file
+and measures, without the mesher's code, Jacobians at corners and integration points, first heights and dihedral
+angles. With `--openfoam` checkMesh judges each mesh, too. T-junction, airfoil and fin are STEP files that FreeCAD
+makes; without it they are left out."""
 
 from __future__ import annotations
 
@@ -42,14 +42,14 @@ class Row:
     prisms: int = 0
     pyramids: int = 0
     coverage: float = math.nan       # percent of the walls' area
-    full: float = math.nan           # percent of the area with nine tenths of the thickness or more
+    full: float = math.nan           # percent of this area with nine tenths of the thickness or more
     negative: int = -1               # cells with a Jacobian that is not positive
-    first_error: float = math.nan    # percent, of the first height where the thickness is not reduced
+    first_error: float = math.nan    # percent of the first height, where it is not reduced; 95th percentile
     step: float = math.nan
-    smallest: float = math.nan       # dihedral angles of the tets beside the layers
+    smallest: float = math.nan       # dihedral angle of the tets outside the layers, degrees
     largest: float = math.nan
-    seconds: float = math.nan        # time of all cores
-    share: float = math.nan          # percent of the time that layers take
+    seconds: float = math.nan        # CPU seconds of all threads
+    share: float = math.nan          # percent of the elapsed time that layers take
     why: str = ""
     openfoam: str = ""               # the verdict of checkMesh
     non_orthogonality: str = ""      # largest and mean, degrees
@@ -61,7 +61,8 @@ def triple(a, b, c):
 
 
 def prism_jacobians(p: np.ndarray) -> np.ndarray:
-    """Returns Jacobians at the corners and at 3 x 3 integration points, by shape functions; p: cells x 6 x 3."""
+    """Returns Jacobians at 7 points of the triangle (corners, integration points) times 5 of the height (ends,
+    integration points), by shape functions; p: cells x 6 x 3."""
     third, sixth = 1 / 3, 1 / 6
     across = [(0, 0), (1, 0), (0, 1), (third, third), (sixth, sixth), (4 * sixth, sixth), (sixth, 4 * sixth)]
     found = []
@@ -75,7 +76,8 @@ def prism_jacobians(p: np.ndarray) -> np.ndarray:
 
 
 def pyramid_jacobians(p: np.ndarray) -> np.ndarray:
-    """Returns Jacobians at the corners of the base and below the apex, up to a positive factor; p: cells x 5 x 3."""
+    """Returns Jacobians, up to a positive factor, on the lines from the apex to 5 x 5 points of the base, corners
+    included; p: cells x 5 x 3."""
     found = []
     for x in (0.0, 0.2113, 0.5, 0.7887, 1.0):
         for y in (0.0, 0.2113, 0.5, 0.7887, 1.0):
@@ -109,7 +111,7 @@ def measure(row: Row, path: Path, first: float) -> None:
     row.negative = int((of_tets <= 0).sum())
     if len(prisms):
         jacobians = prism_jacobians(prisms)
-        sign = np.sign(np.median(jacobians))   # files differ in which triangle comes first
+        sign = np.sign(np.median(jacobians))   # files differ in which triangle of a prism comes first
         row.negative += int(((sign * jacobians).min(axis=0) <= 0).sum())
     if len(pyramids):
         row.negative += int((pyramid_jacobians(pyramids).min(axis=0) <= 0).sum())
@@ -121,9 +123,9 @@ def measure(row: Row, path: Path, first: float) -> None:
 
 
 def measure_first_heights(row: Row, prisms: np.ndarray, layers: np.ndarray, first: float) -> None:
-    """Measures the 95th percentile of the errors of the first heights, where no node has less than nine tenths of the
-    height asked for. A node has one height above a wall, but several above its triangles, which deviate from a curved
-    wall to both sides."""
+    """Measures the 95th percentile of the relative errors of the first heights of prisms in which no node has less than
+    nine tenths of the requested height. A prism's height is the mean over its nodes, because heights above a triangle
+    deviate to both sides from the height above a curved wall."""
     p = prisms[layers == 1]
     if not len(p):
         return
@@ -136,7 +138,7 @@ def measure_first_heights(row: Row, prisms: np.ndarray, layers: np.ndarray, firs
 
 
 def cpu_seconds() -> float:
-    """Returns the CPU seconds of all programs that have been run."""
+    """Returns the CPU seconds of all programs that this one ran and that have ended."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
 
@@ -203,7 +205,7 @@ def judge_in_openfoam(row: Row, program: str, mesh: Path, folder: Path) -> None:
 
 
 def bend(around: int, along: int) -> Surface:
-    """A quarter of a torus with flat ends."""
+    """Returns a quarter of a torus with flat ends."""
     points, polygons = [], []
     for k in range(along + 1):
         turn = 0.5 * math.pi * k / along

@@ -1,6 +1,6 @@
 """collarmesh and its peers behind one interface: a surface and a size as input, measures as result.
-For all meshers the size is a target edge length. If a mesher takes a volume, it gets that of the regular
-tetrahedron with this edge.
+For all meshers the size is a target edge length. A mesher that takes a largest volume instead gets that of the
+regular tetrahedron with this edge.
 """
 
 from __future__ import annotations
@@ -25,17 +25,17 @@ class MeshRun:
     cpu: float                 # seconds of the whole program
     refinement_cpu: float      # seconds of what the mesher calls refinement
     peak_bytes: int            # peak memory of the whole program
-    structure_bytes: int = 0   # memory of the structures by the mesher's output; 0: unknown
+    structure_bytes: int = 0   # memory of the data structures, as the mesher reports it; 0: unknown
     stages: dict | None = None
     guarantee_missed: bool = False
     cells: int = 0             # number in the whole triangulation, including the outside; 0: unknown
     wall: float = 0            # seconds of the whole program
-    volume_wall: float = 0     # seconds for making the tets of a given surface and improving them; 0: unknown
+    volume_wall: float = 0     # seconds from a surface mesh or complex to improved tets; 0: unknown
     report: dict | None = None   # collarmesh's own measurements
 
     @property
     def meshing_cpu(self) -> float:
-        """Returns the seconds of the whole program without the check of its result, which peers do not make."""
+        """Returns the CPU seconds of the whole program without the check of its result, which peers do not make."""
         return self.cpu - (self.stages or {}).get("check", 0)
 
 
@@ -52,7 +52,7 @@ class Collarmesh:
 
     def __init__(self, program: Path, time_limit: float, arguments: list[str] | None = None, improve: int = 0,
                  name: str = "collarmesh"):
-        # Most benchmarks compare the refinement: the improvement of elements comes after it.
+        # Improvement is off by default, because most benchmarks compare the refinement.
         self.program, self.time_limit, self.name = program, time_limit, name
         self.arguments = ["--improve", str(improve), *(arguments or [])]
 
@@ -61,7 +61,7 @@ class Collarmesh:
         return printed.stdout.strip().replace("collarmesh ", "")
 
     def signature(self) -> str:
-        """Returns a text that changes when the meshes may change."""
+        """Returns a text that changes with the program and its arguments, which may change the meshes."""
         state = self.program.stat()
         return f"{state.st_size}-{state.st_mtime_ns} {' '.join(self.arguments)}"
 
@@ -74,7 +74,7 @@ class Collarmesh:
                    "--progress", "none", "-q", *self.arguments]
         measured = run(command, folder, self.time_limit, accepted=(0, self.guarantee_missed))
         report = json.loads((folder / "report.json").read_text())
-        # The report has wall seconds; the share of the core that the program had turns them into CPU seconds.
+        # The report has wall seconds; multiply by the program's CPU seconds per wall second.
         share = min(1.0, measured.cpu / measured.wall)
         stages = {stage: seconds * share for stage, seconds in report["seconds"].items()}
         return MeshRun(report["mesh"]["tets"], measured.cpu, stages["refine"], measured.peak_bytes,
@@ -145,8 +145,8 @@ class Gmsh:
 
     @staticmethod
     def _count(output: str) -> str:
-        """Returns the number of tets. Only HXT prints it; the other algorithms print the number of elements
-        of all dimensions."""
+        """Returns the pattern that finds the number of tets. Only HXT prints it; for other algorithms, finds the number
+        of elements of all dimensions."""
         hxt = r"Final tet. mesh contains (\d+) tetrahedra"
         return hxt if re.search(hxt, output) else r"\d+ nodes (\d+) elements"
 
@@ -169,14 +169,15 @@ class CgalMesh3:
         Surface(surface.name, surface.points, triangles).write_off(folder / "input.off")
 
     def mesh(self, surface: Surface, size: float, folder: Path) -> MeshRun:
-        distance = min(size, surface.diagonal / 20) / 10   # our default
+        distance = min(size, surface.diagonal / 20) / 10   # our default for --distance
         measured = run([str(self.program), "input.off", f"{size:.17g}", f"{distance:.17g}", self.mesh_file], folder,
                        self.time_limit)
         return MeshRun(int(_number(r"(\d+) tets", measured.output)), measured.cpu, measured.cpu, measured.peak_bytes)
 
 
 def gmsh_part_command(part: Path, out: str, order: int = 1) -> list[str]:
-    """Meshes a CAD file or a surface by Gmsh's Python module. Ends this program if the module is missing."""
+    """Returns the command that meshes a CAD file or a surface with Gmsh's Python module. Ends this program if the
+    module is missing."""
     if importlib.util.find_spec("gmsh") is None:
         sys.exit("Gmsh's Python module is missing: install python3-gmsh, and run this with the Python that has it")
     return [sys.executable, str(Path(__file__).resolve().with_name("gmsh_part.py")), str(part), out, str(order)]

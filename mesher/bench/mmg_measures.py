@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Quality and edge lengths of meshes as MMG's histograms give them, for comparison with published ones: the quality
-12 sqrt(3) 3 V / (sum of squared edge lengths)^(3/2) of a tetrahedron, 1 for a regular one, and lengths of edges over
-the size asked for. Prints a Markdown row for each file: MESH SIZE ..."""
+"""Measures quality and edge lengths of meshes like MMG's histograms, for comparison with published ones: the quality
+72 sqrt(3) V / (sum of squared edge lengths)^(3/2) of a tetrahedron, which is 1 for a regular one, and edge lengths
+divided by the requested size. Arguments: MESH SIZE ... Prints a Markdown row for each mesh."""
 
 import itertools
 import sys
@@ -9,7 +9,7 @@ import sys
 import meshio
 import numpy as np
 
-ASKED = (0.71, 1.41)  # the range of MMG's lengths that count as reached
+ASKED = (0.71, 1.41)  # relative edge lengths between these count as reached, as in MMG
 
 
 def measures(path, size):

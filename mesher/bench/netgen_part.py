@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Meshes one CAD file or STL surface with Netgen: netgen_part.py INPUT OUT SIZE
 
-Writes tetrahedra, triangles and their faces as Gmsh 2.2, with all digits of coordinates: Netgen's own export has six,
-which moves nodes off the shape."""
+Writes tetrahedra and triangles, with the numbers of their solids and faces as tags, as Gmsh 2.2 with all digits of
+coordinates: Netgen's own export has six digits, which moves nodes off the shape."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Compares the paper's profile (--profile paper: all that the proofs assume, and nothing else) with the
-defaults and with --coarsen off, over acute families and clean shapes, with a size so large that it has no
-effect: tets, vertices, angles, CPU seconds, and the counts that the paper's lemmas bound. Prints a Markdown
-table."""
+defaults and with --coarsen off, on acute families and on shapes without acute angles, with a size so large
+that it has no effect: tets, vertices, angles, CPU seconds, and the counts that the paper's lemmas bound.
+Prints a Markdown table."""
 
 from __future__ import annotations
 
@@ -41,8 +41,8 @@ class Total:
 
 
 def mesh_text(run: MeshRun) -> str:
-    """Returns: tets; vertices; dihedral angles outside collars and in them; largest radius-edge ratio
-    outside; CPU seconds."""
+    """Returns the text "tets; vertices; dihedral angles outside collars; (in collars); largest radius-edge ratio
+    outside collars; CPU seconds"."""
     check = run.report["check"]
     parts = [tets_text(run), si(check["points"])]
     if check["collar_tets"] < check["tets"]:
@@ -55,8 +55,8 @@ def mesh_text(run: MeshRun) -> str:
 
 
 def counts_text(run: MeshRun) -> str:
-    """Returns: peak cells per vertex; largest cavity outside hubs; largest R_v / r_v; looks per object; cells
-    per gap query; vertices inserted too early."""
+    """Returns the text "peak cells per vertex; largest cavity outside hubs; largest R_v / r_v; looks per located point
+    or ball; cells per gap query; vertices inserted while a skinny cell waited". See WorkCounts."""
     counts = run.report["statistics"]["counts"]
     aspect, queries = counts["largest_aspect"], counts["gap_queries"]
     return "; ".join([f"{counts['peak_cells_per_vertex']:.1f}", si(counts["largest_cavity_outside_hubs"]),

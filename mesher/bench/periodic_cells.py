@@ -1,8 +1,9 @@
 """Representative cells with periodic inclusions: Voronoi grains as .poly, spheres as .brep.
 
-Run as a program it meshes cells of both kinds with and without periodic faces and prints, for each, the tets and the
-angles, the findings, and the time, as ratios. It checks by places alone that points, edges, triangles and tags of
-opposite faces are images of each other, and homogenizes the conductivity of each cell, which lies within bounds.
+Run as a program it meshes cells of both kinds with and without periodic faces. For each cell it prints the ratios of
+tets and of time, the angles, and the findings. It checks by coordinates alone that points, edges, triangles and tags
+of opposite faces are images of each other. It prints the homogenized conductivity of each cell beside bounds, and
+checks for grains that it lies within them.
 """
 import argparse
 import itertools
@@ -16,14 +17,14 @@ import tempfile
 import numpy as np
 
 DIGITS = 12  # vertices are rounded to this many digits, so that opposite faces are images of each other
-ROUNDING = 1e-14  # rounding of places on faces of the unit cube
+ROUNDING = 1e-14  # tolerance of coordinates on faces of the unit cube
 
 
 def grain_polygons(seeds):
-    """The polygons of the periodic Voronoi cells of seeds in the unit cube, cut by its faces.
+    """Returns the polygons of the periodic Voronoi cells of seeds, cut off at the faces of the unit cube.
 
-    Returns a dict from the sorted vertex numbers of a polygon to (vertex numbers in order, neighbours: the grains
-    on its sides, -1 and below: outside), and the vertices, an array of shape (n, 3).
+    The first result is a dict from the sorted vertex numbers of a polygon to (vertex numbers in order, the grains on
+    its two sides; -1 and below: outside). The second one is the vertices, an array of shape (n, 3).
     """
     shifts = np.array(list(itertools.product((-1, 0, 1), repeat=3)), float)
     points = np.concatenate([seeds + shift for shift in shifts])
@@ -41,7 +42,7 @@ def grain_polygons(seeds):
         if np.any(point < -0.7) or np.any(point > 1.7):
             continue
         # Half spaces n . x <= d: bisectors to the nearest points, and the cube. The bisector of two points
-        # has the same number for both.
+        # has the same rounded n and d for both, up to the sign.
         near = np.argsort(np.linalg.norm(points - point, axis=1), kind="stable")[1:80]
         planes = [(points[j] - point, 0.5 * (points[j] @ points[j] - point @ point), j) for j in near]
         for axis in range(3):
@@ -109,8 +110,8 @@ def write_grains(path, grains, seed):
 
 
 def region_point(point, points):
-    """Returns a point in the cube that is nearest to `point` among all points, and well inside its grain; or
-    None."""
+    """Returns a point in the cube to which `point` is the nearest of `points`: of random samples, the one farthest
+    from the borders of the cube and of the grain. Returns None if there is none."""
     rng = np.random.default_rng(1)
     samples = np.concatenate([[point], np.clip(point, 0.01, 0.99) + 0.15 * rng.standard_normal((400, 3))])
     best, most = None, 0.0
@@ -161,7 +162,7 @@ def write_spheres(path, spheres, radius, seed):
 
 
 class Mesh:
-    """Points, tetrahedra and triangles of a .msh file with their tags, and the elements' nodes of any order."""
+    """Points of a .msh file, and the nodes and tags of its tetrahedra, triangles and lines of first or second order."""
 
     def __init__(self, path):
         import meshio
@@ -187,8 +188,8 @@ class Mesh:
 
 
 def verify(mesh):
-    """Checks, by places alone, that opposite faces of the unit cube have the same points, edges and
-    triangles, with one tag for each."""
+    """Checks, by coordinates alone, that opposite faces of the unit cube have the same points, edges and
+    triangles, and that their tags correspond one to one."""
     for axis in range(3):
         image = mesh.images(axis)
         for kind in ("triangle", "line"):
@@ -206,8 +207,8 @@ def verify(mesh):
 
 
 def conductivity(mesh, of_tag):
-    """Returns the homogenized conductivity of a cell with these conductivities of regions, by elements of
-    first order."""
+    """Returns the homogenized conductivity of a cell (3 x 3) by elements of first order, its lower bound (Reuss) and
+    upper bound (Voigt), and the volumes and conductivities of the tets. `of_tag`: conductivity of a region."""
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import connected_components
     from scipy.sparse.linalg import spsolve
@@ -242,7 +243,7 @@ def conductivity(mesh, of_tag):
 
 
 def hashin_shtrikman(share, inclusion, matrix):
-    """Returns bounds on the conductivity of two phases; inclusions have this share of the volume."""
+    """Returns bounds on the conductivity of two phases; `share`: the share of the volume that inclusions have."""
     low, high = sorted((inclusion, matrix))
     share_of_high = share if high == inclusion else 1 - share
     return (low + share_of_high / (1 / (high - low) + (1 - share_of_high) / (3 * low)),
@@ -250,8 +251,8 @@ def hashin_shtrikman(share, inclusion, matrix):
 
 
 def homogenize(kind, mesh):
-    """Returns the conductivity, with ten in spheres and one around them, or one to ten by grain; checks it
-    against bounds."""
+    """Returns the homogenized conductivity, its bounds and its eigenvalues. The conductivity is 10 in spheres and 1
+    around them, or between 1 and 10 in each grain."""
     if kind == "grains":
         made, low, high, _, _ = conductivity(mesh, lambda tag: 1 + 9 * (tag * 7 % 12) / 11)
     else:
@@ -263,7 +264,8 @@ def homogenize(kind, mesh):
 
 
 def run(program, path, *options):
-    """Returns the report of a run, its CPU seconds, the program's messages, and the mesh, if there is one."""
+    """Returns the report of a run (empty if there is none), its CPU seconds, the ended process with its exit code and
+    messages, and the mesh (None if there is none)."""
     with tempfile.TemporaryDirectory() as folder:
         report = pathlib.Path(folder) / "report.json"
         before = resource.getrusage(resource.RUSAGE_CHILDREN)

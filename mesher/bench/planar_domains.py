@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
-"""Ten planar domains, of kinds that papers and collections on 2D meshing show, beside Ruppert's refinement as CGAL has
-it (Triangle's algorithm) and Gmsh: planar_domains.py collarmesh planar_cgal [SIZES_PER_DIAGONAL]. The coordinates are
-made here.
+"""Meshes ten planar domains with collarmesh, with CGAL's version of Ruppert's refinement (Triangle's algorithm) and
+with Gmsh, and prints a Markdown table of angles and numbers of triangles. The domains are of kinds that papers and
+collections on 2D meshing show; this script computes their coordinates.
 
-Without a size the angles alone decide, as with `triangle -pq`: 20.7 degrees, the largest bound for which
-Ruppert's refinement is proved to end. With a size, edges are 1/40 of the diagonal long (or
-1/SIZES_PER_DIAGONAL)."""
+planar_domains.py collarmesh planar_cgal [SIZES_PER_DIAGONAL]
+
+In the columns "angles alone", meshes have no target edge length and only have to reach a smallest angle, as with
+`triangle -pq`: 20.7 degrees, the largest bound for which Ruppert's refinement is proved to end. In the columns "size",
+the target edge length is 1/40 of the diagonal (or 1/SIZES_PER_DIAGONAL)."""
 
 import math
 import pathlib
@@ -19,8 +21,8 @@ ANGLE = 20.7
 
 
 class Domain:
-    """A domain between loops of points. The outline surrounds the holes, each of which has a point inside.
-    There may be segments inside the domain."""
+    """A domain inside an outline and outside holes. The outline is a loop of points; a hole is a loop and a point in
+    it. `inside`: segments inside the domain."""
 
     def __init__(self, name, source, outline, holes=(), inside=()):
         self.name, self.source, self.outline = name, source, outline
@@ -44,12 +46,12 @@ class Domain:
         return list(number), segments
 
     def poly(self):
-        """Returns the domain as one facet in TetGen's format."""
+        """Returns the text of a file in TetGen's format .poly with the domain as one facet."""
         points, _ = self.numbered()
         number = {p: i + 1 for i, p in enumerate(points)}
         polygons = [[number[p] for p in loop] for loop in self.loops()]
         polygons += [[number[a], number[b]] for a, b in self.inside] + [[i + 1]
-                                                                        for i in range(len(points))]  # keeps all points
+                                                                        for i in range(len(points))]  # keeps each
         lines = [f"{len(points)} 3 0 0"] + [f"{i + 1} {x!r} {y!r} 0" for i, (x, y) in enumerate(points)]
         lines += ["1 0", f"{len(polygons)} {len(self.holes)}"] + \
             [f"{len(p)} " + " ".join(map(str, p)) for p in polygons]
@@ -177,7 +179,7 @@ def snowflake():
 
 
 def cracked_square():
-    """A square with segments inside, two of which meet at 9 degrees."""
+    """Returns a square with segments inside, two of which meet at 9 degrees."""
     tip = (5.0, 5.0)
     return Domain("square with cracks", "segments inside, a small angle",
                   [(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0)],
@@ -188,7 +190,7 @@ DOMAINS = (letter, lake, guitar, bolted_plate, spiral, comb, gear, airfoil, snow
 
 
 def angles_of(path):
-    """Returns the smallest and the largest angle, and the number of triangles, of a binary STL file."""
+    """Returns the smallest and the largest angle in degrees, and the number of triangles, of a binary STL file."""
     data = path.read_bytes()
     least, largest, count = 180.0, 0.0, struct.unpack_from("<I", data, 80)[0]
     for i in range(count):

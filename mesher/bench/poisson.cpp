@@ -1,4 +1,4 @@
-// A Poisson problem with a known solution on the tets of a mesh file: errors and condition number.
+// Solves a Poisson problem with a known solution on the tets of a mesh file: errors and condition number.
 // poisson MESH [plate|shell|wedge]
 //
 // Without a second argument the mesh is scaled to a diagonal of 1 and the values are given on all of its
@@ -55,7 +55,7 @@ Solution on_shell() {
           [](const Point& p) { return is_near(p.z, 0) || is_near(p.z, 10); }};
 }
 
-// u = exp(-a r^2) cos(b z) around the z axis, which is the edge; values are given at the back x = 10 and at
+// u = exp(-a r^2) cos(b z), r from the z axis, which is the edge; values are given at the back x = 10 and at
 // the ends z = 0 and z = 4.
 Solution on_wedge() {
   constexpr double a = 0.05, b = 0.4;

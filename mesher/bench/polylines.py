@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Time and counts against the number of segments of loose polylines, and against their spread, by this
-version and by an older one on request: the largest number of cells per vertex at any time, the largest number
-of cells that one insertion destroyed (away from vertices where very many features meet), vertices that were
-inserted while skinny cells waited, and inspections for each point or ball that is located (`looks`). Prints
-Markdown tables."""
+"""Measures time and counts of work against the number of segments of loose polylines, and against the ratio of their
+sizes (spread), with this version and, on request, with an older one. The counts are the largest number of cells per
+vertex at any time, the largest number of cells that one insertion destroyed (except where very many features meet),
+the vertices inserted while skinny cells waited ("too early"), and the inspections per located point or ball
+(`looks`). Prints Markdown tables."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from tables import exponent, machine, seconds, si, table
 from tuning import SizeCache
 
 size = 2.0   # the box is a unit cube, so only the features determine the mesh
-# Family, further parameters for the number n, and the factor between values of n: some families make n^2
-# vertices of n segments.
+# The family, the function that returns its further parameters from the number n of segments, and the factor by which
+# --smallest is multiplied for this family: some families make n^2 vertices of n segments.
 families: list[tuple] = [
     ("skew_zigzags", lambda n: (135,), 1), ("skew_zigzags", lambda n: (45,), 1), ("skew_combs", lambda n: (), 0.1),
     ("helices", lambda n: (), 0.3), ("torus_knot", lambda n: (), 1), ("random_walk", lambda n: (1,), 1),
@@ -47,8 +47,8 @@ def measure(mesher: Collarmesh, shape: AcuteInput, folder: Path) -> MeshRun | st
 
 
 def counts_of(run: MeshRun) -> list[str]:
-    """Returns the counts of a run. An older version has fewer counts: its largest cavity includes those at
-    hubs, and it lacks the peak of cells per vertex."""
+    """Returns the counts of a run. An older version has fewer counts: its largest cavity may be where very many
+    features meet, and it lacks the peak of cells per vertex."""
     counts = run.report["statistics"]["counts"]
     peak, early = counts.get("peak_cells_per_vertex"), counts.get("before_quality")
     looks = counts.get("looks")
@@ -59,7 +59,7 @@ def counts_of(run: MeshRun) -> list[str]:
 
 
 def cells_of(run: MeshRun | str, before: MeshRun | str | None) -> list[str]:
-    """Returns table cells: vertices, seconds, the slope of seconds over vertices, counts."""
+    """Returns table entries: inserted vertices, seconds, exponent of seconds in vertices from `before`, counts."""
     if isinstance(run, str):
         return ["", run, "", "", "", "", ""]
     vertices = run.report["statistics"]["vertices_inserted"]

@@ -1,11 +1,10 @@
 #!/usr/bin/env python3
-"""How near the predictions of `collarmesh info --predict` are to the meshes: tets and seconds over CAD files
-and surfaces, at the default size and at shares of it, with elements of both orders.
+"""Compares the predictions of `collarmesh info --predict` with meshes: tets and CPU seconds for CAD files and surfaces,
+at the default size and at multiples of it, with elements of both orders.
 
-Every fourth of the files that are meshed with the defaults, in alphabetical order, was used to fit the
-constants (src/predict/vertex_counts.h); the tables tell those and the others apart. --out keeps the meshes'
-counts, and a mesh that it holds is not made again; predictions always are. Seconds of meshes are those of CPU
-time."""
+The constants (src/predict/vertex_counts.h) were fitted to every fourth of the files that the defaults can mesh, in
+alphabetical order; the tables have separate rows for these files ("fitted") and for the others. --out keeps the
+measures of meshes, and a mesh that it holds is not made again. Predictions are always made again."""
 
 from __future__ import annotations
 
@@ -28,7 +27,7 @@ from tables import machine, seconds, table
 sizes_per_diagonal = 20
 fitted_every = 4
 memory = int(12e9)
-near = 1.4   # largest factor, in either direction, that counts as near
+near = 1.4   # largest factor between predicted and made tets, either way, that counts as near
 
 
 @dataclass
@@ -46,8 +45,8 @@ class Made:
 class Pair:
     made: Made
     tets: float          # predicted number of tets
-    seconds: float
-    fitted: bool
+    seconds: float       # predicted seconds
+    fitted: bool         # the constants were fitted to this file
 
     def ratio(self) -> float:
         return self.tets / self.made.tets

@@ -47,17 +47,16 @@ for _ in range(int(sys.argv[1]) // block):
 
 
 def fetch_memory(most: int = 4 << 30) -> None:
-    """Uses up to this many bytes of memory and returns them. A virtual machine gets memory that was unused
-    for a while slowly from its host (2.4 s for a gigabyte, 0.05 s the next time). The run that is measured
-    next then finds that memory ready. A separate process does this, because programs inherit the largest
-    resident set of their parent."""
+    """Allocates up to this many bytes of memory and frees them, so that the run that is measured next finds this
+    memory ready: the host of a virtual machine is slow to hand out memory that was unused for a while. A separate
+    process does this, because programs inherit the largest resident set of their parent."""
     free = os.sysconf("SC_AVPHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     subprocess.run([sys.executable, "-c", use_memory, str(min(most, free * 3 // 4))], check=True)
 
 
 def run(command: list[str], folder: Path, time_limit: float, accepted: tuple[int, ...] = (0,)) -> Measured:
-    """Runs a command. Raises ProgramFailed, with the first line of output that looks like an error or else
-    the last line, unless the exit code is an accepted one."""
+    """Runs a command. Raises ProgramFailed if it exceeds the time limit or its exit code is not an accepted one, then
+    with the first line of output that contains "error", or else with the last line."""
     log = folder / "output.txt"
     begin = time.perf_counter()
     with open(log, "wb") as out:

@@ -1,4 +1,4 @@
-// Readers, and the builder of the complex, on a sphere of 4 * rings^2 triangles.
+// Benchmarks of readers, and of the builder of the complex, on a sphere of 4 * rings^2 triangles.
 #include <benchmark/benchmark.h>
 
 #include <array>

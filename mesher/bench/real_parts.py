@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Results for real files as they are: CAD files and surfaces of the folders given, meshed by collarmesh with its
-defaults, by Gmsh (HXT), by TetGen and by CGAL's Alpha_wrap_3 followed by Mesh_3 (wrap_mesh.cpp), all at a twentieth of
-the diagonal. TetGen and the wrap get surfaces only: the triangles as they are, equal points made one.
+"""Meshes real files as they are: CAD files and surfaces of the given folders, by collarmesh with its defaults, by Gmsh
+(HXT), by TetGen and by CGAL's Alpha_wrap_3 followed by Mesh_3 (wrap_mesh.cpp), all at a twentieth of the diagonal.
+TetGen and the wrap get surfaces only: their triangles without any repair, but with equal points merged.
 
 Outcomes: meshed (all tets have positive volume), guarantee missed (collarmesh's exit code 7), unusable mesh
 (no error, but no tets or flat or inverted ones), refused (an error said so), past the limit (of CPU seconds
@@ -154,7 +154,7 @@ def last_error(output: str) -> str:
 
 
 def orientation(corners: np.ndarray) -> Fraction:
-    """Returns six times the volume, exactly."""
+    """Returns six times the signed volume, exactly."""
     first, *others = ([Fraction(float(x)) for x in corner] for corner in corners)
     a, b, c = ([x - y for x, y in zip(corner, first)] for corner in others)
     return (a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2])
@@ -162,7 +162,7 @@ def orientation(corners: np.ndarray) -> Fraction:
 
 
 def measure(row: Row, mesh_file: Path) -> None:
-    """Fills in the measures of the mesh, and the outcome if it has no tets or bad ones."""
+    """Fills in the measures of the mesh; changes the outcome if it has no tets, or tets without positive volume."""
     # meshio treats coordinates of version 1 as single precision, however many digits they have.
     mesh_file.write_text(re.sub(r"(MeshVersionFormatted\s+)1", r"\g<1>2", mesh_file.read_text(), count=1))
     cells = meshio.read(mesh_file)
@@ -173,7 +173,7 @@ def measure(row: Row, mesh_file: Path) -> None:
         return
     corners = cells.points[:, :3][tets]
     volumes = np.linalg.det(corners[:, 1:] - corners[:, :1]) / 6
-    turned = -1 if volumes.sum() < 0 else 1   # this format's tets have the opposite orientation
+    turned = -1 if volumes.sum() < 0 else 1   # -1: all tets of this file have the opposite orientation
     row.volume = abs(volumes.sum())
     with np.errstate(all="ignore"):
         angles = dihedral_angles(cells.points[:, :3], tets)

@@ -1,4 +1,4 @@
-// Builds a complex and refines it, without certificate and output, for profile.sh.
+// Builds a complex and refines it, without certificate and output, for profile.sh and versions.py.
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>

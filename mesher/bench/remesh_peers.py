@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Remeshes meshes of Gmsh (Delaunay, without its optimization), TetGen (with bounds on quality, and without: slivers
-and needles) and Netgen, at the lengths that they have, against the input that they were made of, and alone. Prints a
-Markdown table: whether every guarantee holds, tets, extreme dihedral angles, share of tets beyond 8 to 150 degrees, and
-CPU seconds."""
+"""Remeshes meshes of Gmsh (Delaunay, without its optimization), of TetGen (with bounds on quality; and without, so with
+slivers and needles) and of Netgen. Their edge lengths are kept. Each mesh is remeshed with --against the input that it
+was made from, and without. Prints a Markdown table: whether every guarantee holds, tets, smallest and largest dihedral
+angle, share of tets with an angle below 8 or above 150 degrees, and CPU seconds."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ from tables import machine, seconds, table
 
 cad_suffixes = (".step", ".stp", ".brep")
 guarantee_missed = 7
-bounds = (8, 150)   # degrees
+bounds = (8, 150)   # on dihedral angles, in degrees
 header = ["input", "mesher", "follows", "tets", "angles", "beyond 8 to 150", "then: tets", "angles", "beyond 8 to 150",
           "certified", "CPU s"]
 
 
 class Peers:
-    """Makes meshes of an input at a size. Each method returns the mesh's path."""
+    """The programs that mesh an input at a size. Each peer's method returns the mesh's path."""
 
     def __init__(self, program: Path, limit: float) -> None:
         self.program, self.limit = program, limit

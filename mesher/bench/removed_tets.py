@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""The cost of removing a tetrahedron relative to making one: CAD parts with the defaults.
+"""Compares the cost of removing a tetrahedron with that of making one, for CAD parts with the defaults.
 
-Two ratios of coarsening's time per tetrahedron that it removes: to refinement's time per tetrahedron that it makes, and
-to the time of refinement and improvement per tetrahedron in runs without coarsening (because coarsening improves, too).
-Each time is the least wall time of some runs. Prints a Markdown table of quantiles over the parts; with
---each a line for every part, too."""
+Coarsening's time per removed tetrahedron is divided by refinement's time per tetrahedron that it makes, and by the time
+of refinement and improvement per tetrahedron in runs with --coarsen off (because coarsening also improves). Each time
+is the least wall time of some runs. Prints a Markdown table of quantiles over the parts; with --each another table with
+a line for every part."""
 
 from __future__ import annotations
 

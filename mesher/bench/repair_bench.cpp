@@ -1,5 +1,5 @@
-// Repair of spheres that intersect their neighbours in a cubic lattice, each turned differently; and its cost
-// for valid input.
+// Benchmarks of repair: spheres in a cubic lattice that intersect their neighbours, each turned differently;
+// and a valid surface.
 #include <benchmark/benchmark.h>
 
 #include <array>
@@ -53,7 +53,7 @@ void building(benchmark::State& state, const PolygonSoup& soup) {
 }
 
 BENCHMARK_CAPTURE(repairing, bunch, bunch(3, 30))->Unit(benchmark::kMillisecond)->Iterations(1);
-// A valid surface costs only the builder: both lines should be equal.
+// A valid surface costs no more than the builder: these two lines should be equal.
 BENCHMARK_CAPTURE(repairing, sphere, sphere(158))->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(building, sphere, sphere(158))->Unit(benchmark::kMillisecond);
 

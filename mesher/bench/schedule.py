@@ -1,10 +1,9 @@
 #!/usr/bin/env python3
-"""Estimates the gain of whole runs by more threads than this machine has cores, with a simulated schedule.
-With COLLARMESH_RECORD_COSTS the program runs on one core, divides its work as for several threads
-(--threads), and records processor seconds: of each piece of each parallel part, and of the work between these
-parts. Here the pieces are dealt to workers, each of which takes the next piece when it is free. The work
-between parallel parts runs on one worker, and each parallel part costs a barrier. The estimate ignores that
-workers share caches, memory and the system. Prints Markdown tables."""
+"""Estimates, with a simulated schedule, how much faster whole runs are with more threads than this machine has cores.
+With COLLARMESH_RECORD_COSTS the program runs on one core, divides its work as for several threads (--threads), and
+records the CPU seconds of each piece of each parallel part, and of the serial work between these parts. It then
+simulates workers, each of which takes the next piece when it is free. Serial work runs on one worker, and each parallel
+part costs a barrier. The estimate ignores that workers share caches, memory and the system. Prints Markdown tables."""
 
 from __future__ import annotations
 
@@ -22,7 +21,7 @@ workers = (2, 4, 8, 16, 32, 64)
 
 
 def record(program: Path, inputs: list[Path], size: str, threads: int, suffix: str, time_limit: float) -> list[dict]:
-    """Returns the rows of the program's table: a stage and a place in the code each."""
+    """Returns the rows of the table that the program records, one for each stage and place in the code."""
     os.environ |= {"COLLARMESH_CORES": str(threads), "COLLARMESH_RECORD_COSTS": "costs.tsv"}
     with tempfile.TemporaryDirectory() as folder:
         run_program([str(program), *map(str, inputs), "--size", size, "--threads", str(threads), "-o", f"mesh{suffix}",
@@ -33,7 +32,7 @@ def record(program: Path, inputs: list[Path], size: str, threads: int, suffix: s
 
 
 def by_stage(rows: list[dict]) -> dict[str, dict[str, float]]:
-    """Returns sums in the order of the stages; the last one is the total."""
+    """Returns the sums of the rows of each stage, in the order of the stages; the last one, "all", is the total."""
     sums: dict[str, dict[str, float]] = defaultdict(lambda: defaultdict(float))
     order = ["start", "read", "complex", "refine", "coarsen", "improve", "project", "second order", "check", "write"]
     for row in sorted(rows, key=lambda row: order.index(row["stage"]) if row["stage"] in order else len(order)):

@@ -10,7 +10,7 @@
 namespace collarmesh::bench {
 
 /// Returns about n well-spaced points in the unit cube, like the vertices of a mesh of uniform size: a
-/// lattice whose points are moved at random by up to 0.4 of their spacing.
+/// lattice whose points are moved at random by up to 0.4 of their spacing along each axis.
 std::vector<Point> well_spaced_points(std::size_t n);
 
 /// Returns n independent uniform points in the unit cube.

@@ -1,17 +1,17 @@
-"""Surface meshes of CAD files beside Gmsh's: shells.py PROGRAM FOLDER [--shares 20 60] [--only PATTERN].
+"""Compares surface meshes of CAD files with Gmsh's: shells.py PROGRAM FOLDER [--shares 20 60] [--only PATTERN].
 
-Each file of the folder (STEP, IGES, BREP) is meshed with triangles of 1/20 and 1/60 of its diagonal, by
-`collarmesh --dimension 2` and by Gmsh (its Python module; default algorithm, sizes between corners alone). Both
-run in a process of their own with one thread, so that the CPU seconds are those of everything from reading to
-writing; those of reading by OpenCASCADE and of its tessellation are also shown apart. Angles, counts and
-distances are measured in the same way from both meshes, in Gmsh's own format:
+Each file of the folder (STEP, IGES, BREP) is meshed with a target edge length of 1/20 and of 1/60 of its diagonal, by
+`collarmesh --dimension 2` and by Gmsh (its Python module, with the default algorithm and only a largest size). Each
+runs in a process of its own with one thread, so that the CPU seconds include everything from reading to writing; they
+are also shown without OpenCASCADE's reading and tessellation. Angles, counts and distances are measured in the same
+way for both meshes, from files in Gmsh's format:
 
-- angles: of all triangles ("raw"), and without those at corners of the input that are sharper than 20 degrees
-  ("away"): triangles with such an angle between two sides on edges of the input, at a vertex of the input;
-- distance: the largest one of the triangles' centres from the faces, which OpenCASCADE has cut into triangles
-  (`collarmesh repair`), in target edge lengths; needs the Python module vtk;
-- counts at equal distance: where Gmsh's mesh is farther from the faces than ours, Gmsh makes another one with
-  as many elements per circle as it takes (6 to 24), which is compared with ours ("equal").
+- angles: of all triangles ("raw"), and without sharp corners of the input ("away"), which are triangles with an angle
+  below 20 degrees at a vertex of the input, between two sides on edges of the input;
+- distance: the largest distance of a triangle's centre from the input's faces, in target edge lengths; OpenCASCADE
+  cuts the faces into triangles (`collarmesh repair`); needs the Python module vtk;
+- counts at equal distance ("equal"): where Gmsh's mesh is farther from the faces than ours, Gmsh makes another mesh,
+  with the fewest elements per circle (6, 12 or 24) at which it is as near as ours, and the counts are compared.
 
 `--kept FOLDER` keeps Gmsh's measures and the triangles of the faces there, so that later runs are shorter.
 """
@@ -69,7 +69,7 @@ def run(command, **environment):
 
 
 def stages_of(path):
-    """Returns the CPU seconds by stage, of which some are OpenCASCADE's."""
+    """Returns the recorded CPU seconds by stage; some stages are OpenCASCADE's work."""
     stages = {}
     for line in pathlib.Path(path).read_text().splitlines()[1:]:
         stage, _, _, _, serial, work = line.split("\t")[:6]
@@ -185,7 +185,7 @@ def gmshs(path, size, folder, per_circle=0):
 
 
 def kept_or_made(arguments, path, share, size, folder, per_circle=0):
-    """Returns Gmsh's row, from the folder of kept ones if it is there."""
+    """Returns Gmsh's row, from the folder --kept if that has it."""
     kept = pathlib.Path(arguments.kept) / f"{path.name}.{share:g}.{per_circle}.json" if arguments.kept else None
     if kept and kept.exists():
         return json.loads(kept.read_text())
@@ -236,7 +236,7 @@ def summary(name, rows):
 
 
 def ratio_of_counts(pairs):
-    """Returns the median of the triangles of the first mesh over those of the second, and the number of pairs."""
+    """Returns the median ratio of triangle counts, first mesh over second, and the number of pairs, as text."""
     counts = [a["measures"]["count"] / b["measures"]["count"] for a, b in pairs
               if a.get("measures") and b and b.get("measures")]
     return f"{statistics.median(counts):.2f} on {len(counts)} files" if counts else "none"

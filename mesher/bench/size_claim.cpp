@@ -1,9 +1,10 @@
-// The output size beside the paper's claim: tets over the integral of the feature size to the power of -3,
-// for families in which an angle or the spread varies. Prints a Markdown table; takes no arguments.
+// Compares the output size with the paper's claim: the number of tets divided by the integral of h^-3, for
+// families in which an angle or the spread varies. Prints Markdown tables; takes no arguments.
 //
-// The feature size h(x) is the distance to two features that are disjoint (the local feature size, paper,
-// Definition 3) or that meet at a crease, as those in the gap size do (Definition 2); h is 1-Lipschitz and 0
-// at creases only. Cells inside collars do not count on either side. No size is asked for.
+// The feature size h(x) is the smallest distance within which x has two features that are disjoint (the local
+// feature size, paper, Definition 3) or that meet at a crease (as in the gap size, Definition 2); h is
+// 1-Lipschitz and 0 at creases only. Both the number and the integral leave out tets in collars. The target
+// edge length is so large that it has no effect.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -54,7 +55,7 @@ struct Feature {
   std::set<Index> vertices, curves;             // vertices and curves that it contains
 };
 
-/// The features of a complex of straight curves and planar patches, and h.
+/// The features of a complex of straight curves and planar patches; evaluates h at points.
 class FeatureSize {
  public:
   explicit FeatureSize(const Plc& plc) : plc_(plc) {
@@ -135,8 +136,8 @@ class FeatureSize {
                        [&](Index v) { return !on_common_curve(v) && angle_at_vertex(f, g, v) < acute; });
   }
 
-  // Returns the smallest angle between the half planes of two patches; a patch on both sides of the curve has
-  // two half planes.
+  // Returns the smallest angle in degrees between the half planes of two patches at a curve; a patch on both
+  // sides of the curve has two half planes.
   double angle_at_curve(const Feature& f, const Feature& g, Index curve) const {
     const auto [a, b] = ends(curve);
     const Vector axis = unit(b - a);
@@ -172,7 +173,7 @@ class FeatureSize {
     return least;
   }
 
-  // Returns the sectors between the rays to the other corners of the feature's triangles at a point.
+  // Returns the sectors of the feature's triangles at their corner p, between the rays to the other corners.
   static std::vector<plc::Sector> sectors(const Feature& f, const Point& p) {
     std::vector<plc::Sector> found;
     for (const auto& t : f.triangles)
@@ -189,7 +190,8 @@ class FeatureSize {
   std::vector<std::pair<double, std::size_t>> nearest_;  // scratch
 };
 
-/// Returns the integral of h^-3 over the cells that count; the mesh shows where it varies.
+/// Returns the integral of h^-3 over the tets outside collars, by samples in each tet; tets are small where h
+/// is small.
 double integral(const TetMesh& mesh, FeatureSize& h) {
   constexpr int samples = 16;
   std::mt19937_64 random(1);

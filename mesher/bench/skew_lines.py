@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Points on two skew lines in a box: their Delaunay triangulation has n^2 tetrahedra, a good mesh of
-them only O(n). Prints collarmesh' and TetGen's CPU seconds and growth exponents."""
+"""Meshes a box with n points on each of two skew lines: their Delaunay triangulation has n^2 tetrahedra, but a good
+mesh with these points needs only O(n). Prints CPU seconds of collarmesh and TetGen, and the exponents with which
+they grow with n."""
 
 from __future__ import annotations
 

@@ -1,7 +1,6 @@
-// Measures seconds per stage and peak memory of building a complex from a surface file, on a sphere of 4
-// RINGS^2 triangles:
-//   surface_to_plc write RINGS FILE     write the sphere
-//   surface_to_plc read FILE            read it into a complex
+// Measures seconds per stage and peak memory of building a complex from a surface file:
+//   surface_to_plc write RINGS FILE     write a sphere of 4 * RINGS^2 triangles
+//   surface_to_plc read FILE            read a file into a complex, and print the measures
 #include <sys/resource.h>
 
 #include <cstdio>

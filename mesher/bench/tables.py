@@ -16,7 +16,7 @@ def table(header: list[str], rows: list[list[str]]) -> str:
 
 
 def si(value: float) -> str:
-    """Returns a number with a prefix: 1234567 as "1.23M"."""
+    """Returns a number as text with an SI prefix: 1234567 as "1.23M"."""
     for limit, unit in ((1e6, "M"), (1e3, "k")):
         if float(f"{value:.3g}") >= limit:   # 999999 is 1M
             return f"{value / limit:.3g}{unit}"

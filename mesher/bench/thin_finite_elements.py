@@ -1,11 +1,10 @@
 #!/usr/bin/env python3
-"""A Poisson problem with a known solution on thin domains, where one layer of tetrahedra spans the thickness:
-a plate (10 by 10 by 0.2), a shell (a tube of radius 5, 10 high and 0.2 thick) and a wedge of 5 degrees, as
-CAD shapes, meshed by collarmesh and by Gmsh (HXT) at the same sizes with elements of both orders, solved by
-one solver (`poisson`). Values are given at the ends only; the solution does not change across the thickness.
-The error of the gradient per unknown is the error times the number of unknowns to the power of half the
-order, because over a surface the error falls with that power. So meshes with different numbers of tets can be
-compared. Prints a Markdown table."""
+"""Solves a Poisson problem with a known solution, by one solver (`poisson`), on thin domains, where one layer of
+tetrahedra spans the thickness: a plate (10 by 10 by 0.2), a shell (a tube of radius 5, 10 high and 0.2 thick) and a
+wedge of 5 degrees. collarmesh and Gmsh (HXT) mesh these CAD shapes at the same sizes with elements of both orders.
+Values are given at the ends only; the solution does not change across the thickness. On a surface the error is
+proportional to unknowns^(-order / 2). The error of the gradient per unknown is the error divided by this power, so
+that meshes with different numbers of tets can be compared. Prints a Markdown table."""
 
 from __future__ import annotations
 
@@ -28,7 +27,7 @@ header = ["domain", "size", "order", "mesher", "tets", "unknowns", "error in L2"
 
 
 def write_shapes(folder: Path) -> None:
-    """plate.brep, shell.brep and wedge.brep."""
+    """Writes plate.brep, shell.brep and wedge.brep."""
     cad = gmsh.model.occ
     for name in sizes:
         gmsh.model.add(name)
@@ -58,7 +57,7 @@ def mesh_by_gmsh(shape: Path, size: float, order: int, out: Path) -> None:
         gmsh.model.mesh.generate(3)
         gmsh.model.mesh.setOrder(order)
         gmsh.write(str(out))
-    except Exception as error:   # the module raises plain ones
+    except Exception as error:   # the module raises no type of its own
         raise ProgramFailed(str(error)) from error
     finally:
         gmsh.model.remove()

@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
-"""Families of bodies with one thin feature, ever thinner: what it costs, and whether volumes stay.
+"""Measures what ever thinner features cost, and whether volumes stay: families of bodies with one thin feature.
 
 thinness.py [--families wedge step ...] [--thinness 1e-1 1e-2 ...] [--program collarmesh] [--limit 60]
             [--options '--order 2']
 
-Each body is about 10 target edge lengths wide, and its feature's thickness is a share of that length. A cell
-has the vertices that refinement inserted (in the last try), the tets and the CPU seconds of the whole run;
-then the exit code unless it is 0, and how many regions there are where some are missing. "power" is the
-exponent with which the number of vertices grows with 1 / thickness in the steepest step: for steps down to
---feature-size, and for those below. Volumes are compared with the exact ones: the largest difference of a
-region, relative to that region; if a region is missing, the difference of all regions together. Rows go to
---out as they come."""
+Each body is about 10 target edge lengths wide. --thinness gives the thickness of its feature, in target edge
+lengths. The table has a row for each family and a column for each thickness. Its entries are the vertices that
+refinement inserted (in the last try), the tets and the CPU seconds of the whole run; then the exit code unless
+it is 0, and the number of regions if it is wrong. Two columns, "power to" --feature-size and "below" it, are
+the exponent with which the number of vertices grows with 1 / thickness: the largest one between neighbouring
+thicknesses. "volumes off" is the largest relative error of a region's volume in runs with exit code 0, or the
+error of the total volume if a region is missing. Rows go to --out as they come."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ class Body:
 
 
 def extruded(outline: list[tuple[float, float]]) -> Surface:
-    """A polygon in x and z, counterclockwise from x to z, drawn along y."""
+    """Returns the prism over a polygon in the plane of x and z, extruded along y. The polygon turns from x to z."""
     n = len(outline)
     points = [(x, y, z) for y in (0.0, wide) for x, z in outline]
     sides = [[k, n + k, n + (k + 1) % n, (k + 1) % n] for k in range(n)]
@@ -79,43 +79,43 @@ def profile(*outline: tuple[float, float]) -> Body:
 
 
 def wedge(h: float) -> Body:
-    """A fin that tapers to an edge."""
+    """Returns a block with a fin that is h thick at its root and tapers to an edge."""
     return profile((0, 0), (10, 0), (10, 3), (16, 3), (10, 3 + h), (10, 6), (0, 6))
 
 
 def notch(h: float) -> Body:
-    """A slit that tapers to an edge inside."""
+    """Returns a block with a slit that is h wide at its mouth and tapers to an edge inside."""
     return profile((0, 0), (10, 0), (10, 3), (4, 3), (10, 3 + h), (10, 6), (0, 6))
 
 
 def step(h: float) -> Body:
-    """Two halves of a face that differ in height."""
+    """Returns a block whose upper face has two halves that differ in height by h."""
     return profile((0, 0), (10, 0), (10, 6), (5, 6), (5, 6 + h), (0, 6 + h))
 
 
 def fin(h: float) -> Body:
-    """A wall, of the same thickness everywhere, on a block."""
+    """Returns a block with a wall that is h thick everywhere."""
     return profile((0, 0), (10, 0), (10, 3), (16, 3), (16, 3 + h), (10, 3 + h), (10, 6), (0, 6))
 
 
 def slit(h: float) -> Body:
-    """A cut into a block, of the same width everywhere."""
+    """Returns a block with a cut that is h wide everywhere."""
     return profile((0, 0), (10, 0), (10, 3), (4, 3), (4, 3 + h), (10, 3 + h), (10, 6), (0, 6))
 
 
 def sliver_face(h: float) -> Body:
-    """An edge that is cut off by a face of this width."""
+    """Returns a block with an edge that is cut off by a face of width h."""
     c = h / math.sqrt(2)
     return profile((0, 0), (10, 0), (10, 6 - c), (10 - c, 6), (0, 6))
 
 
 def fold(h: float) -> Body:
-    """A face that turns back over itself and again."""
+    """Returns a block whose upper face is folded like a Z; the folds are h high."""
     return profile((0, 0), (10, 0), (10, 6), (4, 6), (6, 6 + h), (0, 6 + 2 * h))
 
 
 def flake(h: float) -> Body:
-    """A flat tetrahedron, a body of its own, beside a block."""
+    """Returns a block and, beside it, a tetrahedron of height h as a second body."""
     block = profile((0, 0), (10, 0), (10, 6), (0, 6))
     corners = [(10.5, 4.0, 2.0), (10.5, 6.0, 2.0), (10.5, 5.0, 4.0), (10.5 + h, 5.0, 2.7)]
     block.shells.append(Surface("flake", corners, [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]))
@@ -123,13 +123,13 @@ def flake(h: float) -> Body:
 
 
 def blocks_apart(h: float) -> Body:
-    """Two blocks, one above the other, with a gap of this width."""
+    """Returns two blocks, one above the other, with a gap of width h."""
     low, high = profile((0, 0), (10, 0), (10, 3), (0, 3)), profile((0, 3 + h), (10, 3 + h), (10, 6), (0, 6))
     return Body(low.volumes + high.volumes, low.shells + high.shells)
 
 
 def layer(h: float) -> Body:
-    """Parallel sheets in a block, with a region between them."""
+    """Returns a block that two parallel sheets divide into three regions; the middle one is h thick."""
     heights = [0.0, 3.0, 3.0 + h, 6.0]
     points = [(x, y, z) for z in heights for x, y in ((0.0, 0.0), (wide, 0.0), (wide, wide), (0.0, wide))]
     polygons = [[4 * k + c for c in range(4)] for k in range(4)]
@@ -140,7 +140,7 @@ def layer(h: float) -> Body:
 
 
 def cylinders(h: float) -> Body:
-    """Two prisms of 96 sides, edge against edge, with a gap of this width."""
+    """Returns two prisms of 96 sides, edge against edge, with a gap of width h."""
     angles = [2 * math.pi * k / 96 for k in range(96)]
     outline = [(3 * math.cos(a), 3 * math.sin(a)) for a in angles]
     bodies = [profile(*((x + at, z) for x, z in outline)) for at in (-3 - h / 2, 3 + h / 2)]
@@ -148,7 +148,7 @@ def cylinders(h: float) -> Body:
 
 
 def cad_cylinders(h: float) -> Body:
-    """Two round cylinders of a STEP file, with a gap of this width."""
+    """Returns two round cylinders, as a STEP file, with a gap of width h."""
     return Body(2 * [math.pi * 9 * wide],
                 step=f"[cylinder(3, {wide}, 0, {3 + h / 2}), cylinder(3, {wide}, 0, {-3 - h / 2})]")
 
@@ -167,8 +167,8 @@ class Row:
     cpu: float
     vertices: int = 0
     tets: int = 0
-    made: int = 0      # regions
-    regions: int = 0
+    made: int = 0      # regions of the mesh
+    regions: int = 0   # regions of the body
     off: float = math.nan
     said: str = ""
 
@@ -181,8 +181,8 @@ class Row:
 
 
 def difference(made: list[float], exact: list[float]) -> float:
-    """Returns the largest relative difference. Compares sorted volumes, because regions are numbered in an
-    order of their own."""
+    """Returns the largest relative difference of a region's volume; if the numbers of regions differ, that of the
+    total volume. Compares sorted volumes, because the mesher numbers regions in its own order."""
     if len(made) != len(exact):
         return abs(sum(made) / sum(exact) - 1)
     return max(abs(a / b - 1) for a, b in zip(sorted(made), sorted(exact)))
@@ -210,7 +210,7 @@ def measure(family: str, thinness: float, options: argparse.Namespace) -> Row:
 
 def steepest(rows: list[Row]) -> str:
     powers = [math.log(b.vertices / a.vertices) / math.log(a.thinness / b.thinness) for a, b in zip(rows, rows[1:])
-              if a.vertices and b.vertices]  # constrained tetrahedra get no inserted vertices
+              if a.vertices and b.vertices]  # 0: a failed run, or constrained tetrahedra alone
     return f"{max(max(powers), 0):.1f}" if powers else ""
 
 

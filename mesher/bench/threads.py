@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Measures the gain by several threads: the stages of whole runs with one thread and with more. Single
-threads run on each of the cores in turn, because cores are not equally fast; several threads run on as many
-cores. Runs alternate over some rounds, and memory is made ready before each (processes.fetch_memory). Prints
-a Markdown table of medians of wall seconds, and the speedup."""
+"""Measures the speedup by several threads, for each stage of whole runs. Runs with one thread use each of the cores in
+turn, because cores are not equally fast; runs with several threads use as many cores. Runs alternate over some
+rounds, and memory is made ready before each (processes.fetch_memory). Prints a Markdown table of medians of wall
+seconds and of speedups."""
 
 from __future__ import annotations
 

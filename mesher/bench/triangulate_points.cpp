@@ -26,7 +26,7 @@ std::vector<Kernel::Point_3> read_points(const char* path) {
 
 void triangulate(const std::vector<Kernel::Point_3>& points) {
   const double begin = cpu_seconds();
-  // Sorts the points along a space-filling curve first.
+  // The constructor first sorts the points along a space-filling curve.
   const CGAL::Delaunay_triangulation_3<Kernel> triangulation(points.begin(), points.end());
   const double seconds = cpu_seconds() - begin;
   std::printf("%zu points, %zu finite cells, %.6f s\n", points.size(),

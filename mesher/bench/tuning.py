@@ -13,8 +13,8 @@ trials = 8
 
 
 class SizeCache:
-    """A JSON file in the folder for temporary files, with sizes and the signature of the mesher for which
-    they were found. If the mesher has changed, they are still good first guesses."""
+    """A JSON file in the folder for temporary files, with sizes and the signatures of the meshers for which they were
+    found. If a mesher has changed, its old size is still a good first guess."""
 
     def __init__(self) -> None:
         self.folder = Path(tempfile.gettempdir()) / "collarmesh_bench"
@@ -31,9 +31,9 @@ class SizeCache:
 
 
 def size_for(mesher, surface, target: int, folder: Path, cache: SizeCache) -> float:
-    """Returns the size at which `mesher` makes approximately the wanted number of tets; the nearest size
-    found if the number jumps over the wanted one or never gets that low. Raises ProgramFailed if the mesher
-    does."""
+    """Returns the size at which `mesher` makes approximately the wanted number of tets: of the sizes tried, the one
+    with the nearest number. It may be far from the wanted one if the number of tets jumps over it or never gets that
+    low. Raises ProgramFailed if the mesher does."""
     key = f"{mesher.name} {surface.name} {len(surface.polygons)} {target} {near_enough}"
     size, signature = cache.get(key) or ((surface.volume / (0.12 * target)) ** (1 / 3), None)
     if signature == mesher.signature():
@@ -50,8 +50,9 @@ def size_for(mesher, surface, target: int, folder: Path, cache: SizeCache) -> fl
 
 
 def _next_trial(found: list[tuple[float, float]]) -> float:
-    """Returns the next logarithm of the size to try: by the secant if that makes sense, else as if tets ~
-    size^-3; between the nearest sizes on both sides once they are known."""
+    """Returns the logarithm of the next size to try: by the secant of the last two trials, with a limited slope, or as
+    if tets ~ size^-3 after the first one. Bisects if that is not between the nearest sizes with too many and with too
+    few tets."""
     at, miss = found[-1]
     slope = -3.0
     if len(found) > 1 and found[-2][0] != at:

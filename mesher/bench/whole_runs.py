@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Whole runs of collarmesh and of Gmsh HXT with its optimization, with one thread and with two, at equal
+"""Compares whole runs of collarmesh and of Gmsh HXT with its optimization, with one thread and with two, at equal
 numbers of tetrahedra.
 
 The programs run in turn, some rounds, on as many cores as they may use threads; before each run memory is
 made ready (processes.fetch_memory). Ours refines, coarsens, improves, checks and writes; HXT meshes the
-surface, refines, optimizes and writes. `volume` is the time of what both do between a surface and a mesh:
-refine, coarsen and improve here, "meshing 3D" there. Prints Markdown tables of medians of wall seconds.
+surface, refines, optimizes and writes. `volume` is the time from the input's surface to the mesh: our stages
+refine, coarsen and improve, and HXT's "meshing 3D". Prints Markdown tables of medians of wall seconds.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from tuning import SizeCache, size_for
 
 
 class Runs:
-    """The runs of one mesher on one input at one count, by the number of threads."""
+    """The runs of one mesher on one input at one number of tets, by the number of threads."""
 
     def __init__(self, threads: list[int]) -> None:
         self.by_threads: dict[int, list[MeshRun]] = {t: [] for t in threads}
@@ -35,13 +35,13 @@ class Runs:
         return statistics.median(getattr(run, member) for run in self.by_threads[threads])
 
     def speed(self, threads: int, member: str) -> float:
-        """Returns tets per second and core."""
+        """Returns tets per second and thread."""
         return self.by_threads[threads][-1].tets / self.median(threads, member) / threads
 
 
 def measure(options, makers, surface: Surface, target: int, cache: SizeCache) -> dict[str, Runs]:
-    """Measures a table row for each mesher: searches the sizes, then runs them in turn. `makers`: each makes
-    a mesher with a given number of threads."""
+    """Measures each mesher at a number of tets: searches the sizes, then runs the meshers in turn. `makers`: functions
+    that return a mesher with a number of threads."""
     results, sizes, folders = {}, {}, {}
     for make in makers:
         mesher = make(1)

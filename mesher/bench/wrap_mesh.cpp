@@ -1,8 +1,8 @@
 // Wraps any surface with CGAL's Alpha_wrap_3 and meshes the wrap with its Mesh_3, the peer in the benchmark
 // of real parts: wrap_mesh INPUT.off OUT.mesh
 //
-// The wrap closes what is narrower than about a fiftieth of the diagonal and lies a six hundredth of it
-// outside the input; elements are a twentieth of the diagonal.
+// The wrap closes gaps and holes that are narrower than about 1/50 of the diagonal, and lies 1/600 of the
+// diagonal outside the input. The target edge length is 1/20 of the diagonal.
 #include <CGAL/Bbox_3.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/IO/File_medit.h>
@@ -37,7 +37,7 @@ struct Soup {
   std::vector<std::array<std::size_t, 3>> triangles;
 };
 
-// Returns no triangles if the file cannot be read.
+// Reads polygons as triangles; none if the file cannot be read.
 Soup read_triangles(const char* file) {
   Soup soup;
   std::vector<std::vector<std::size_t>> polygons;
@@ -56,8 +56,8 @@ double diagonal_of(const std::vector<Point>& points) {
 Complex mesh_wrap(const Polyhedron& wrap, double size) {
   Domain domain(wrap);
   namespace parameters = CGAL::parameters;
-  // Bounds: circumradii of a triangle and a tetrahedron with edges of length `size`. No features are
-  // protected, because a wrap's edges are chamfered by its offset.
+  // Bounds on circumradii: somewhat above those of a regular triangle and tetrahedron with edges `size`. No
+  // features are protected, because a wrap's edges are chamfered by its offset.
   const Criteria criteria(parameters::facet_angle = 25, parameters::facet_size = 0.7 * size,
                           parameters::facet_distance = size / 20, parameters::cell_radius_edge_ratio = 2,
                           parameters::cell_size = 0.79 * size);

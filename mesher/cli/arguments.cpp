@@ -167,8 +167,8 @@ CLI::App* add_repair_command(CLI::App& app, RepairArguments& a) {
   return repair;
 }
 
-/// Returns the end of a message about a path without a known format: its extension, or the library that is
-/// missing.
+/// Returns the end of a message about an output path without a known format: the path's extension, or the
+/// library that the format needs but the program lacks.
 std::string extension_list(const std::string& path) {
   if (const std::string missing = io::missing_library(path); !missing.empty())
     return "cannot be written: " + missing;
@@ -182,8 +182,8 @@ bool output_is_among(const std::vector<std::string>& formats, const MeshArgument
   return std::find(formats.begin(), formats.end(), format_of_output(a)) != formats.end();
 }
 
-/// Rejects partitions for formats that do not keep them. `from_mesh`: the input is a mesh, which may be
-/// partitioned already.
+/// Rejects partitions for formats that do not keep them, and options that need partitions if there are none.
+/// `from_mesh`: the input is a mesh, which may be partitioned already.
 void check_partitions(const MeshArguments& a, bool from_mesh) {
   if (a.partitions > 0 && !output_is_among(io::formats_with_partitions(), a))
     reject("--partitions", "{} has no place for partitions; use {}", format_of_output(a),
@@ -200,7 +200,7 @@ void check_partitions(const MeshArguments& a, bool from_mesh) {
     reject("--ghost-cells", "needs partitions; say how many with --partitions");
 }
 
-/// Checks each part of a batch as if it were alone.
+/// Checks the arguments for one mesh or for a batch; the parts of a batch are checked as if each were alone.
 void check_mesh_arguments(const MeshArguments& a);
 
 void check_batch(const MeshArguments& a) {

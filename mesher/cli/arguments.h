@@ -29,8 +29,8 @@ struct InfoArguments : RunOptions {
   bool json = false;
 };
 
-/// The arguments of `collarmesh convert IN... -o OUT`: a surface becomes a mesh if OUT is one. "-" is
-/// standard input or standard output.
+/// The arguments of `collarmesh convert IN... -o OUT`: a surface is meshed if OUT has a format of meshes. "-"
+/// is standard input or standard output.
 struct ConvertArguments : MeshArguments {
   std::vector<std::string> meshing_options;  ///< given options that only meshing uses
   bool repairs = false;  ///< whether to repair surfaces that are converted to surfaces: --repair is given
@@ -45,7 +45,7 @@ struct RepairArguments : MeshArguments {
 
 /// The arguments of `collarmesh remesh MESH -o OUT`.
 struct RemeshArguments : MeshArguments {
-  std::vector<std::string> against;  ///< the input that the mesh was made of; empty: the mesh's own surface
+  std::vector<std::string> against;  ///< the input that the mesh was made from; empty: the mesh's surface
 };
 
 using Arguments = std::variant<MeshArguments, CheckArguments, InfoArguments, ConvertArguments,
@@ -55,7 +55,7 @@ using Arguments = std::variant<MeshArguments, CheckArguments, InfoArguments, Con
 std::vector<std::string> all_formats();
 
 /// Parses a command line. If there is nothing to run (help, version, a mistake), prints the text and returns
-/// the exit code instead.
+/// an exit code, not arguments.
 std::variant<Arguments, ExitCode> parse(const process::Console& console, int argc, const char* const* argv);
 
 }  // namespace collarmesh::cli

@@ -18,7 +18,7 @@ ExitCode remesh_command(process::Process& process, const RemeshArguments& argume
 /// Certifies a mesh file; prints findings and measures to standard output.
 ExitCode check_command(process::Process& process, const CheckArguments& arguments);
 
-/// Describes the complex, or the mesh, on standard output.
+/// Describes the input, a complex or a mesh, on standard output.
 ExitCode info_command(process::Process& process, const InfoArguments& arguments);
 
 /// Writes the facets that the mesher would use: repaired, or unchanged if they are a valid complex. Throws

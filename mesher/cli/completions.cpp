@@ -33,8 +33,8 @@ std::string numbers_of(const std::string& name) {
   return {};
 }
 
-/// Returns the words to choose from, as in "on|off"; empty for a name in capitals, which stands for formats
-/// or numbers.
+/// Returns the values to choose from, with blanks between them: words such as those of "on|off", the formats,
+/// or a few numbers; empty if the option takes other values.
 std::string words_of(const CLI::Option& option) {
   std::string words = option.get_type_name();
   if (words == "FORMAT") {
@@ -55,7 +55,7 @@ bool takes_file(const CLI::Option& option) {
          (option.get_type_name().empty() && takes_value(option));
 }
 
-/// Returns a description of an option in one clause.
+/// Returns the first clause of a description, up to its first semicolon.
 std::string short_text(const std::string& description) {
   return description.substr(0, description.find(';'));
 }
@@ -107,7 +107,7 @@ std::string bash_completion(const CLI::App& app) {
       words, options, long_names(app), names_of_subcommands(app));
 }
 
-/// Returns an argument of zsh's `_arguments`: '*--name[description]:value's description:action'.
+/// Returns the options as arguments of zsh's `_arguments`: '*--name[description]:value's description:action'.
 std::string zsh_arguments(const CLI::App& app, const std::string& indent) {
   std::string text;
   for (const CLI::Option* option : app.get_options()) {

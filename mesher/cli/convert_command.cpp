@@ -51,7 +51,7 @@ void write_soup(process::Process& process, const MeshArguments& a, const std::ve
   tell_unless_quiet(process.console, a, merged.told);
 }
 
-/// Divides the mesh as the option says or, without it, as the input was divided.
+/// Divides the mesh as --partitions says; without this option the mesh keeps the partitions of the input.
 void divide(const MeshArguments& a, TetMesh& mesh) {
   if (a.partitions > 0) partition(mesh, a.partitions);
   const char* const option = a.ghost_cells != GhostCells::off ? "--ghost-cells"

@@ -58,7 +58,7 @@ std::string HelpText::make_option_desc(const CLI::Option* option) const {
   return wrapped(option->get_description());
 }
 
-/// Leaves out which other options an option needs: a message names them if they are missing.
+/// Leaves out the list of other options that an option needs: a message names them if they are missing.
 std::string HelpText::make_option_opts(const CLI::Option* option) const {
   const std::string all = CLI::Formatter::make_option_opts(option);
   return all.substr(0, all.find(" Needs:"));

@@ -6,7 +6,7 @@
 
 namespace collarmesh::cli {
 
-/// Returns all commands of the program, or of a command.
+/// Returns the subcommands of the program or of a command.
 std::vector<const CLI::App*> subcommands(const CLI::App& app);
 
 /// The help of CLI11 with our own usage lines, wrapped for a terminal of 80 columns.

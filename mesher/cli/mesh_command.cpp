@@ -28,13 +28,13 @@ namespace collarmesh::cli {
 
 namespace {
 
-/// The data that pages show, in the input's unit.
+/// The data that HTML reports show, in the input's unit of length.
 struct Shown {
   report::ShownMesh mesh;
   std::vector<report::ShownStep> trace;
 };
 
-/// Writes a report. `shown` is for pages.
+/// Writes a report, as HTML or JSON. HTML reports need `shown`.
 void write_report(const std::string& path, const MeshArguments& arguments, const report::MeshRun& run,
                   const std::optional<Shown>& shown) {
   const nlohmann::ordered_json report = report::run_json(arguments, run);
@@ -113,8 +113,8 @@ void tell_of(const process::Console& console, const MeshArguments& arguments, co
                            io::format_of(arguments.output, arguments.output_format), run.result.mesh)));
 }
 
-/// Throws Stopped if the certificate found an element that no solver can use. Before that,
-/// prints the findings and writes the trace.
+/// Throws Stopped if the certificate found an element that no solver can use. Prints the findings and writes
+/// the trace before it throws.
 void require_usable(process::Process& process, const MeshArguments& arguments, Stages& stages,
                     const report::MeshRun& run) {
   const auto tell = [&] {

@@ -17,8 +17,8 @@ namespace collarmesh::cli {
 
 namespace {
 
-/// Reads the written file again and describes it: coordinates may have lost digits, and interfaces their
-/// regions.
+/// Reads the written file again. Returns a warning if it is no valid complex: some formats drop digits of
+/// coordinates, or the regions beside interfaces.
 std::string read_again(const std::string& path, const RepairArguments& a) {
   try {
     const PolygonSoup soups[] = {files::read_surface(path, a.output_format)};

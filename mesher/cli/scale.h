@@ -7,7 +7,7 @@
 
 namespace collarmesh::cli {
 
-/// Changes the unit of length of the output.
+/// Multiplies coordinates by a factor, to change the unit of length of the output.
 inline void scale(std::vector<Point>& points, double factor) {
   if (factor == 1) return;
   for (Point& p : points) p = {factor * p.x, factor * p.y, factor * p.z};

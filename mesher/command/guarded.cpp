@@ -40,7 +40,7 @@ ExitCode fail_without_threads(process::Process& process) {
               "no thread can be made; nothing was written; raise the limit on threads or memory");
 }
 
-// Returns whether TBB failed to create a thread, which shows only in the message.
+// Returns whether TBB failed to create a thread; only the exception's message tells this.
 bool is_of_threads(const std::exception& error) {
   return std::string_view(error.what()).find("pthread_create") != std::string_view::npos;
 }

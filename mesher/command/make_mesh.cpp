@@ -37,7 +37,7 @@ void note_where_it_stopped(process::Process& process, const MeshResult& result) 
           p.z));
 }
 
-/// A builder of complexes from the input files. Prints the changes made for each.
+/// A builder of complexes from the input files. Prints the warnings and repairs of each one.
 class InputSource : public ComplexSource {
  public:
   /// Keeps references to all arguments.
@@ -81,7 +81,7 @@ class InputSource : public ComplexSource {
 
   const RepairOptions& built_with() const { return built_with_; }
 
-  /// Returns the sources of the size field that had no effect, after a mesh was made.
+  /// Returns a message for each source of the size field that had no effect. Call it after a mesh was made.
   std::vector<std::string> without_effect() const {
     std::vector<std::string> told;
     if (size_field_use_)
@@ -100,7 +100,7 @@ class InputSource : public ComplexSource {
   RepairOptions built_with_;
   std::string told_of_options_;                   // warnings about options, printed once even if several
                                                   // meshes are tried
-  std::shared_ptr<SizeFieldUse> size_field_use_;  // for the mesh tried last
+  std::shared_ptr<SizeFieldUse> size_field_use_;  // use in the mesh tried last
 };
 
 }  // namespace

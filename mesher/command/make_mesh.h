@@ -25,11 +25,11 @@ MadeMesh make_mesh(process::Process& process, const MeshArguments& arguments);
 /// Reads the input files.
 std::unique_ptr<files::ComplexInput> read_inputs(process::Process& process, const MeshArguments& arguments);
 
-/// Makes the mesh of the input in `run`. Returns the options with which the complex was repaired.
+/// Meshes `input` and puts the results into `run`. Returns the options with which the complex was repaired.
 RepairOptions make_mesh(process::Process& process, const MeshArguments& arguments, files::ComplexInput& input,
                         Stages& stages, report::MeshRun& run);
 
-/// Makes the files of a run's steps, if requested. They appear when they are committed.
+/// Writes the steps of a run to files that appear when they are committed. Returns null without --trace.
 std::unique_ptr<process::StagedFile> staged_trace(process::Process& process, const MeshArguments& arguments,
                                                   const Trace& trace);
 

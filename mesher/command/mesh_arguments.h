@@ -18,7 +18,7 @@ struct MeshArguments : report::RequestedRun {
   bool tell_losses = false;                 ///< report data that the output's format cannot store
 };
 
-/// Adds the options of the table that a command takes.
+/// Adds those options of the table that this command takes.
 void add_options(CLI::App& app, Option::Command command, RunOptions& options);
 
 /// Checks combinations of options. Throws CLI::ValidationError.

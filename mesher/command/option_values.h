@@ -9,17 +9,18 @@
 /// The syntax of options' values. The error for a wrong value describes valid ones.
 namespace collarmesh::command {
 
-/// Throws the error for a wrong value.
+/// Throws the error for a wrong value of an option. The message says why the value is wrong.
 template <class... Values>
 [[noreturn]] void reject(const std::string& option, fmt::format_string<Values...> message,
                          Values&&... values) {
   throw CLI::ValidationError(option, fmt::format(message, std::forward<Values>(values)...));
 }
 
-/// Accepts a finite number in an interval, so that "nan" and "inf" are rejected as well.
+/// Returns a check for numbers from `low` to `high`; it rejects "nan" and "inf", too. `name` describes valid
+/// numbers in the error.
 CLI::Validator number_in(double low, double high, const std::string& name);
 
-/// Accepts one of these extensions; "STL" becomes ".stl".
+/// Returns a check for these extensions; it turns "STL" into ".stl".
 CLI::Validator format_name(const std::vector<std::string>& extensions);
 
 /// Joins extensions: ".off .stl"

@@ -18,7 +18,7 @@ constexpr double proved_radius_edge = std::numbers::sqrt2;
 // The lowest bounds on collar angles that meshes of test shapes kept: without coarsening
 // (doc/architecture/collars.md), and after it (doc/architecture/coarsening.md).
 constexpr double reached_collar_angle = 130, reached_coarsened = 120;
-// Limits relative to the diagonal.
+// Distances below or tolerances above these, relative to the diagonal, get a warning.
 constexpr double small_distance = 1e-5, large_planar_tolerance = 1e-3;
 
 bool is_smooth_anywhere(const Plc& plc) {

@@ -8,8 +8,8 @@
 
 namespace collarmesh::command {
 
-/// Returns warnings of options whose values are beyond those that are proved or known to work: for each a
-/// full sentence, with an alternative.
+/// Returns warnings about options that have no effect, or whose values are beyond those that are proved or
+/// known to work. Each is a full sentence.
 std::vector<std::string> option_warnings(const MeshArguments& arguments, const Plc& plc);
 
 }  // namespace collarmesh::command

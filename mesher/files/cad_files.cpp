@@ -39,8 +39,8 @@ std::unique_ptr<brep::CadModel> read_by_module(const std::string& path, std::str
   return model;
 }
 
-/// Returns the time in seconds that reading a file may take if there is no time limit. Parts of a hundred MB
-/// have taken minutes.
+/// Returns the time in seconds that reading a file, or cutting its faces into triangles, may take if the
+/// program has no time limit.
 double patience_with(const std::string& path) {
   constexpr double at_least = 600, for_a_megabyte = 60;
   std::error_code error;

@@ -22,7 +22,7 @@ namespace collarmesh::files {
 
 /// Options for reading CAD files.
 struct CadReading {
-  std::function<double(double diagonal)> deflection;  ///< returns the largest distance of the triangles from
+  std::function<double(double diagonal)> deflection;  ///< returns the permitted distance of triangles from
                                                       ///< the shape, absolute, given the shape's diagonal
   SolidOverlap overlap = SolidOverlap::first;
   unsigned threads = 0;  ///< maximum number; 0: all cores
@@ -51,13 +51,15 @@ class CadFiles {
   bool empty() const;
   /// Returns the names of the files, for messages.
   std::string names() const;
-  /// Returns names and colours of the file that all these soups came from; null if they came from several
-  /// files, whose tags would collide.
+  /// Returns names and colours of the CAD file if all soups of the complex came from it (`soups` is their
+  /// number); else null, because the tags of several files would collide.
   const brep::CadLabels* labels(std::size_t soups) const;
 
-  /// Replaces the soups' triangles by ones that are finer than the first ones by this factor.
+  /// Replaces the soups' triangles by finer ones: the permitted distance and angle between them and the shape
+  /// are those of the first triangles divided by `finer`.
   void tessellate(double finer, std::vector<PolygonSoup>& soups);
-  /// Replaces the triangles of some faces only. A face is given by the number of its soup and its tag.
+  /// Does the same for some faces only; the other faces of their files get their first triangles again. A
+  /// face is given by the number of its soup and its tag.
   void tessellate(double finer, const std::set<std::pair<Index, Tag>>& faces,
                   std::vector<PolygonSoup>& soups);
 

@@ -7,7 +7,7 @@
 namespace collarmesh::files {
 
 /// Writes the partition of each tet, in the order of the tets, to a file that OpenFOAM's decomposePar reads
-/// (method `manual`). The program gmshToFoam keeps that order. Throws WriteError.
+/// (method `manual`). OpenFOAM's gmshToFoam keeps the order of tets. Throws WriteError.
 void write_cell_decomposition(const std::string& path, const TetMesh& mesh);
 
 }  // namespace collarmesh::files

@@ -58,13 +58,13 @@ CheckReport check_as_built(const TetMesh& mesh, ComplexInput& input, const RunOp
   return report;
 }
 
-/// Checks the mesh against complexes of further repairs. Keeps the first report if the mesh fits none of
-/// them.
+/// Checks the mesh against complexes that stronger repairs of the input make. Takes the report and the repair
+/// of the first complex that the mesh fits; keeps the given ones if it fits none.
 void check_against_further(const TetMesh& mesh, ComplexInput& input, const RunOptions& options,
                            const Execution& execution, CheckReport& report, RepairReport& repair) {
   std::vector<RepairOptions> all = further_repairs(options.repair, repair);
   all.insert(all.begin(), options.repair);
-  constexpr double size = 1, diagonal = 20;  // in the ratio of the default size to the diagonal
+  constexpr double size = 1, diagonal = 20;  // any lengths in the ratio of the default size to the diagonal
   for (const RepairOptions& coarser : coarser_repairs(options.repair, size, diagonal)) all.push_back(coarser);
   for (RepairOptions& each : all)
     if (!each.wrap_at_once) each.target_size = options.mesh.size;  // collapses features, as `mesh` does

@@ -27,7 +27,8 @@ namespace collarmesh::files {
 
 namespace {
 
-constexpr double share_of_triangles = 0.1;  // relative to the distance that the mesh may have from the shape
+constexpr double share_of_triangles = 0.1;  // permitted distance of the first triangles from the shape,
+                                            // relative to that of the mesh
 constexpr double finest = 4;  // triangles of CAD faces get at most this many times finer than the first ones
 
 bool may_be_too_coarse(const PlcError& error) {
@@ -150,14 +151,15 @@ Plc ComplexInput::build(const PlcOptions& options, const RepairOptions& repair) 
   return known->plc;
 }
 
-/// Keeps a repaired complex for `build`, unless it is large.
+/// Keeps a repaired complex for later calls of `build`, unless it is large or only some faces have finer
+/// triangles.
 void ComplexInput::remember(const PlcOptions& options, const RepairOptions& repair, const Plc& plc) {
   constexpr std::size_t most = 4, most_triangles = 500'000;
   const bool some_finer = !cad_.empty() && finer_ == 0;
   if (!built_.repaired.repaired || built_.repaired.cancelled || some_finer ||
       plc.triangles.size() > most_triangles)
     return;
-  // Keep the first one, because later tries return to it.
+  // Drop the oldest one but the first, because later tries return to the first one.
   if (known_.size() == most) known_.erase(known_.begin() + 1);
   known_.push_back({options, repair, finer_, plc, built_});
 }
@@ -203,7 +205,7 @@ Plc ComplexInput::without_small_features(Plc plc, const PlcOptions& options, con
                                       soups_, options, kept, watched()));
 }
 
-/// Adds pairs of merged faces, where solids of a file touch, to those of the complex.
+/// Adds the pairs of CAD faces that were merged where solids touch to the complex's pairs of replaced tags.
 void ComplexInput::add_replaced_faces(Plc& plc) const {
   std::vector<std::pair<Tag, Tag>>& all = plc.cleanup.replaced_tags;
   std::ranges::copy(cad_.replaced_faces(), std::back_inserter(all));
@@ -285,7 +287,7 @@ Plc ComplexInput::build_valid(const PlcOptions& options, const RepairOptions& re
   return take(remove_noise(build_plc(soups_, options), soups_, options, repair, watched()));
 }
 
-/// Builds the complex like `build_valid`. If there is noise and none is allowed, throws PlcError before the
+/// Builds the complex like `build_valid`. Without `with_noise`, throws PlcError if there is noise, before the
 /// repair, which would be the most expensive part.
 Plc ComplexInput::build_finer(const PlcOptions& options, const RepairOptions& repair, bool with_noise) {
   if (with_noise) return build_valid(options, repair);
@@ -296,10 +298,10 @@ Plc ComplexInput::build_finer(const PlcOptions& options, const RepairOptions& re
   return take(remove_noise(std::move(plc), soups_, options, none, watched()));
 }
 
-/// Returns the complex with finer triangles on the faces whose triangles are too coarse for the mesh, if that
-/// complex is valid without repair and its volumes are no worse. If only one side of a wall gets finer
-/// triangles, the wall becomes thinner; in that case all faces get finer triangles. Faces that are `fine`
-/// already have the finest triangles.
+/// Returns the complex with finer triangles on the faces whose triangles are too coarse for the mesh. It must
+/// be valid without repair, have as many regions and hardly worse volumes. Otherwise all faces get finer
+/// triangles, because a wall becomes thinner if only one of its sides gets them. If that fails, too, returns
+/// `plc`. Faces that are `fine` already have the finest triangles.
 Plc ComplexInput::resolved(Plc plc, const std::set<SoupFace>& fine, const PlcOptions& options,
                            const RepairOptions& repair) {
   constexpr double margin = 1.5, little = 2e-3;
@@ -326,13 +328,14 @@ Plc ComplexInput::resolved(Plc plc, const std::set<SoupFace>& fine, const PlcOpt
     }
     built_ = {};
   }
-  tessellate(1);  // everywhere: the next call leaves files without such faces as they are
+  tessellate(1);  // all faces, because the next call leaves files without faces in `fine` as they are
   if (!fine.empty()) tessellate(finest, fine);
   built_ = std::move(coarse);
   return plc;
 }
 
-/// Returns the largest relative difference of a region's volume from the exact one, where that is known.
+/// Returns the largest relative difference between the volume of a region and that in the CAD shape, over the
+/// regions whose exact volume is known.
 double ComplexInput::volume_off(const Plc& plc) const {
   std::vector<Tag> patches, curves;
   for (const Plc::Patch& patch : plc.patches) patches.push_back(patch.tag);
@@ -357,7 +360,7 @@ void ComplexInput::tessellate(double finer) {
   finer_ = finer;
 }
 
-/// Replaces the triangles of some faces.
+/// Replaces the triangles of these faces by finer ones.
 void ComplexInput::tessellate(double finer, const std::set<SoupFace>& faces) {
   reading_.stop();
   finer_ = 0;

@@ -25,8 +25,8 @@ namespace collarmesh::files {
 /// Options for reading the files of one complex.
 struct InputReading {
   std::string format;  ///< overrides the files' extensions; empty: by extension
-  /// Returns the surface distance tolerance, absolute, given the diagonal. The triangles of CAD shapes are at
-  /// most a tenth of it from the shape.
+  /// Returns the surface distance tolerance, absolute, given the diagonal. The first triangles of CAD shapes
+  /// are at most a tenth of it from the shape.
   std::function<double(double diagonal)> distance = [](double diagonal) {
     return default_distance(0, diagonal);
   };
@@ -46,9 +46,9 @@ struct InputReading {
 /// Returns the settings for reading that the options of a run give.
 InputReading reading_of(const RunOptions& options, const std::string& format = {});
 
-/// Returns these settings for the input of a mesh: triangles of CAD shapes are as fine as its sizes ask for.
-/// For meshes of solids they are also fine enough to keep volumes. The result refers to `options`, which must
-/// outlive it.
+/// Returns these settings for input that will be meshed: triangles of CAD shapes are as fine as the mesh's
+/// sizes ask for and, for meshes of solids, fine enough to keep volumes. The result refers to `options`,
+/// which must outlive it.
 InputReading reading_for_mesh(const RunOptions& options, const std::string& format = {});
 
 /// The files of one complex: surfaces, complexes and CAD shapes, which are triangulated here.
@@ -70,8 +70,8 @@ class ComplexInput {
   const std::vector<PolygonSoup>& soups() const { return built_.soups.empty() ? soups_ : built_.soups; }
   bool has_cad() const { return !cad_.empty(); }
   std::string cad_names() const { return cad_.names(); }
-  /// Returns the changes to CAD shapes, one per line. `dimension` is that of the elements: meshes of surfaces
-  /// and curves need no notes on open solids.
+  /// Returns notes on the CAD shapes and their changes, one per line. `dimension` is that of the elements:
+  /// meshes of surfaces and curves need no notes on open solids.
   std::vector<std::string> notes(unsigned dimension = 3) const { return cad_.notes(dimension == 3); }
 
   /// Builds the complex, of repaired facets if necessary. If triangles of CAD faces intersect, tries finer
@@ -135,7 +135,7 @@ class ComplexInput {
   double finer_ = 1;  // factor relative to the first triangles of CAD shapes; 0 if only some faces have finer
                       // ones
   Built built_;
-  std::vector<Known> known_;  // the last repaired complexes
+  std::vector<Known> known_;  // the first and the last few repaired complexes
 
   /// The first complex with the current options, if the program numbered its features; as it was before it
   /// got names. Later complexes keep its numbers.

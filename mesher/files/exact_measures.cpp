@@ -26,9 +26,9 @@ double corrected(double in_complex, const brep::CadMeasure& measure) {
   return in_complex + (measure.exact - measure.cut);
 }
 
-/// The edge or face of a file.
+/// An edge or a face of a file.
 struct Source {
-  Index file;  // the first soup with it
+  Index file;  // the first soup that has it
   Tag number;
   friend auto operator<=>(const Source&, const Source&) = default;  // NOLINT(modernize-use-nullptr)
 };
@@ -48,7 +48,7 @@ class Origins {
     group.measure = &found->second;
   }
 
-  /// Returns corrected sizes by feature.
+  /// Returns the size of each feature, corrected; NaN where no exact measure is known.
   std::vector<double> corrected_sizes() {
     for (const auto& [source, group] : groups_) {
       const double stretch = corrected(group.size, *group.measure) / group.size;
@@ -136,7 +136,7 @@ class Measures {
     return found == soups_with_.end() ? no_soups : found->second;
   }
 
-  /// Returns the areas of soups in the complex.
+  /// Returns for each soup the total area, in the complex, of the patches that lie on the soup's faces.
   std::vector<double> areas_of_soups() const {
     std::vector<double> areas(sources_.soups.size(), 0);
     for (Index p = 0; p < plc_.patches.size(); ++p)
@@ -144,7 +144,8 @@ class Measures {
     return areas;
   }
 
-  /// Returns the soup whose area differs least from that of a region's boundary.
+  /// Returns the soup whose faces differ least from the patches around a region: the total area
+  /// of faces that only one of the two has is smallest.
   std::optional<Index> soup_that_bounds(const std::vector<Index>& patches,
                                         const std::vector<double>& soup_areas) const {
     std::map<Index, double> common;
@@ -162,7 +163,7 @@ class Measures {
     return cad ? cad->measures.volumes[soup - cad->first_soup] : std::nullopt;
   }
 
-  /// Returns the measures of a solid minus those of the solids inside it, whose faces also bound its region.
+  /// Returns the volume of a solid minus those of the solids inside it, whose faces also bound its region.
   std::optional<brep::CadMeasure> solid_without_others(Index own, const std::vector<Index>& boundary) const {
     std::optional<brep::CadMeasure> result = solid(own);
     if (!result) return result;

@@ -18,7 +18,8 @@ double diagonal_of(std::span<const PolygonSoup> soups) {
   return box.diagonal();
 }
 
-/// Returns whether a point is within a distance of a polygon, whose corners are convex or nearly so.
+/// Returns whether the squared distance of a point from a polygon is at most `squared_reach`. Precondition:
+/// the polygon is convex or nearly so.
 bool is_near(const Point& p, const PolygonSoup& soup, std::span<const Index> polygon, double squared_reach) {
   const auto& at = soup.points;
   for (std::size_t i = 2; i < polygon.size(); ++i)

@@ -23,7 +23,7 @@ std::vector<fs::path> with_siblings(const fs::path& path, std::initializer_list<
   return files;
 }
 
-/// Returns the file and its files of faces and edges.
+/// Returns the file and those beside it with its faces and edges, each followed by its .h5 file.
 std::vector<fs::path> parts_of_xdmf(const fs::path& path) {
   std::vector<fs::path> files;
   for (const char* part : {"", "_faces", "_edges"})
@@ -39,7 +39,7 @@ std::vector<fs::path> parts_of_polymesh(const fs::path& path) {
   return files;
 }
 
-/// Returns whether this file has a name that the pieces written for the .pvtu have.
+/// Returns whether a file has a name such as we give to the pieces of this .pvtu.
 bool is_named_as_piece(const fs::path& file, const fs::path& pvtu) {
   const std::string first = pvtu.stem().string() + "_", stem = file.stem().string();
   return file.extension() == ".vtu" && stem.starts_with(first) && stem.size() > first.size() &&

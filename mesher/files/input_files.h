@@ -11,7 +11,7 @@ namespace collarmesh::files {
 /// not exist, the message proposes the most similar name.
 std::string existing_file(const std::string& path);
 
-/// Reads a tetrahedral mesh. `format` overrides the extension. Throws ReadError.
+/// Reads a tetrahedral mesh. `format` overrides the file's extension. Throws ReadError.
 TetMesh read_mesh(const std::string& path, const std::string& format = {});
 
 /// Reads a tetrahedral mesh. Returns nothing if the file contains a surface instead, or has a surface format.

@@ -12,7 +12,7 @@ namespace collarmesh::process {
 
 namespace {
 
-/// Returns the bytes of data without allocating.
+/// Returns the size in bytes of this process's data and stacks; allocates nothing.
 std::size_t data_bytes() {
   const int file = open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
   if (file < 0) return 0;
@@ -38,7 +38,7 @@ std::size_t memory_of_the_machine() {
 }
 
 void limit_memory(std::size_t bytes) {
-  // The limit counts memory reserved for threads' stacks, used or not.
+  // RLIMIT_DATA also counts memory that is reserved for threads' stacks but not used.
   constexpr std::size_t for_stacks_and_libraries = std::size_t{48} << 20;
   rlimit limit;
   if (bytes == 0 || getrlimit(RLIMIT_DATA, &limit) != 0) return;

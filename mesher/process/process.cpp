@@ -30,7 +30,7 @@ void print(std::string_view message) {
   }
 }
 
-// GMP aborts if it gets no memory.
+// GMP's own functions abort if they get no memory; with these the new-handler ends the program.
 void* gmp_allocate(std::size_t bytes) { return ::operator new(bytes); }
 void gmp_free(void* block, std::size_t) { ::operator delete(block); }
 void* gmp_reallocate(void* block, std::size_t old_bytes, std::size_t bytes) {
@@ -129,7 +129,7 @@ void Process::on_time(int) {
     process->interrupts.flag_.store(true, std::memory_order_relaxed);
 }
 
-/// Passes a signal on to the child. A terminal sends its signals to the child as well.
+/// Passes a signal on to the child, unless it is from the terminal, which sends it to the child as well.
 void Process::on_passed_signal(int number, siginfo_t* information, void*) {
   Process* const process = current_;
   if (process == nullptr) return;
@@ -162,8 +162,8 @@ void Process::catch_signals() {
     limit.rlim_cur = limit.rlim_max - to_end_within;
     setrlimit(RLIMIT_CPU, &limit);
   }
-  // Turns the signals for a file that grows too large and for a pipe that nobody reads into ordinary write
-  // errors.
+  // Without these signals, writing to a file that grows too large or to a pipe that nobody reads is an
+  // ordinary error.
   for (const int number : {SIGXFSZ, SIGPIPE}) std::signal(number, SIG_IGN);
 }
 

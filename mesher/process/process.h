@@ -41,8 +41,8 @@ class Process {
   void catch_signals();
   /// Passes signals that ask to stop on to `supervisor.child` from now on.
   void pass_signals_on();
-  /// Ends the program after a crash of a library from now on: HDF5 and MPI may crash if they get no memory.
-  /// Prints one of two lines; the texts must outlive this object.
+  /// Makes any later crash end the program with a message: libraries such as HDF5 and MPI may crash if they
+  /// get no memory. Both texts must outlive this object.
   void catch_crashes(std::string_view if_memory_is_short, std::string_view otherwise);
 
   /// Runs a command so that an interrupt ends the program within a second, whatever the command is doing.

@@ -66,7 +66,7 @@ void remove_dead_folders(const fs::path& parent) {
   }
 }
 
-/// Returns the folder for output to standard output before it is copied there.
+/// Returns the folder in which a file is made before it is copied to standard output.
 fs::path temporary_place() {
   std::error_code error;
   for (const fs::path& place : {fs::temp_directory_path(error), fs::path("/tmp"), fs::path("/var/tmp")})

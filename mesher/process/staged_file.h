@@ -68,8 +68,8 @@ class StagedFiles {
   std::filesystem::path make_folder_beside(const std::filesystem::path& target);
   void take_back() noexcept;
 
-  // A mutex that its thread may lock again, because memory may run out while it is locked. A forked child can
-  // do so, too, which std::recursive_mutex does not allow: the child's thread has another number.
+  // A mutex that the thread that holds it may lock again, because memory may run out meanwhile. In a forked
+  // child this works, too, unlike with std::recursive_mutex: the child's thread has another number.
   class Mutex {
    public:
     void lock() {

@@ -42,8 +42,8 @@ struct Supervisor::Shared {
 
   std::atomic<int> result{running};
   std::atomic<bool> in_cad{false};
-  std::atomic<Deadline> end{Deadline()};      // for the process
-  std::atomic<Deadline> cad_end{Deadline()};  // for OpenCASCADE's current work
+  std::atomic<Deadline> end{Deadline()};      // deadline of the process
+  std::atomic<Deadline> cad_end{Deadline()};  // deadline of OpenCASCADE's work
   std::array<char, 128> doing{};
   std::array<char, 1024> file{};
   std::array<char, 16384> folders{};  // paths, each with its terminating zero

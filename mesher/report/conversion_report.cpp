@@ -77,7 +77,7 @@ std::size_t count_tags(const Values& values) {
   return static_cast<std::size_t>(std::count_if(values.begin(), values.end(), [](auto v) { return v != 0; }));
 }
 
-/// Counts the names of groups of some dimensions. `which` has a bit for each dimension.
+/// Counts the names of groups of the dimensions whose bits are set in `which`: bit 1 for curves and so on.
 std::size_t count_names(const TagNames& names, unsigned which) {
   std::size_t count = 0;
   for (std::size_t dimension = 1; dimension <= 3; ++dimension)

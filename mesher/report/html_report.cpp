@@ -73,7 +73,7 @@ Json shown_json(const ShownMesh& shown) {
           {"worst", std::move(worst)}};
 }
 
-/// Removes the pairs of nodes, of which pages only show the number.
+/// Removes the lists of node pairs, because pages show only how many pairs there are.
 Json without_node_pairs(Json report) {
   if (const auto periodic = report.find("periodic"); periodic != report.end() && periodic->is_object())
     for (Json& pair : (*periodic)["pairs"]) pair.erase("node_pairs");

@@ -9,12 +9,13 @@
 
 namespace collarmesh::report {
 
-/// Returns a run as one HTML page that needs no network: `report` (`run_json`) as text, and a view of the
-/// mesh, in the same unit of length, that can be turned and cut. The view also shows the steps of `trace`.
+/// Returns one HTML page about a run, which needs no network: `report` (`run_json`) as text, and a view of
+/// the mesh that can be turned and cut, in the report's unit of length. The view also shows the steps of
+/// `trace`.
 std::string html_report(const nlohmann::ordered_json& report, const ShownMesh& shown,
                         const std::vector<ShownStep>& trace = {});
 
-/// Returns whether a report with this path is a page.
+/// Returns whether a report with this path is an HTML page, by its extension.
 bool is_html(const std::string& path);
 
 }  // namespace collarmesh::report

@@ -7,7 +7,8 @@
 
 namespace collarmesh::report {
 
-/// Returns a line for each wall, one for each reason of lower layers, and one for the cells.
+/// Returns a line for each patch with layers, one for each reason why layers are lower than asked for, and
+/// one that counts the cells.
 std::string layers_text(const LayersReport& report);
 nlohmann::ordered_json layers_json(const LayersReport& report);
 

@@ -14,17 +14,18 @@ namespace collarmesh::report {
 struct MeshGroup {
   Tag tag = 0;
   std::string name;       ///< given name; empty: none
-  std::size_t cells = 0;  ///< triangles or edges
-  std::size_t quads = 0;  ///< quadrangles
-  double measure = 0;     ///< their area or length
-  Point where;            ///< centre of the largest triangle or edge
+  std::size_t cells = 0;  ///< number of triangles or edges
+  std::size_t quads = 0;  ///< number of quadrangles
+  double measure = 0;     ///< area or length of all cells
+  Point where;            ///< centre of the largest cell
 };
 
-/// Returns the groups by tag; measures use corners only. Cost: linear.
+/// Return the groups, sorted by tag. Cells of second order are measured as straight ones. Cost: linear.
 std::vector<MeshGroup> patches_of(const TetMesh& mesh);
 std::vector<MeshGroup> curves_of(const TetMesh& mesh);
 
-/// Returns the name of a tag: the given name, or the one in a CAD shape; empty if it has none.
+/// Returns the name of a tag: the given name or, with GroupNames::cad, the one in the CAD shape ("Face3");
+/// empty if it has neither.
 std::string name_of(const TagNames& given, GroupNames names, std::size_t dimension, Tag tag);
 
 /// Returns the names of regions by their numbers, for regions whose tag has a name.

@@ -8,9 +8,10 @@
 
 namespace collarmesh::report {
 
-/// Returns a line for each pair.
+/// Returns a line for each pair of groups of periodic faces.
 std::string periodic_text(const PeriodicReport& report);
-/// Returns the report with the motion of each pair, and its nodes as indices of the mesh's points, from 0.
+/// Returns the report with the motion and the node pairs of each pair of groups. Nodes are indices of the
+/// mesh's points, from 0.
 nlohmann::ordered_json periodic_json(const PeriodicReport& report, const TetMesh& mesh);
 
 }  // namespace collarmesh::report

@@ -52,7 +52,8 @@ const char* status_name(MeshStatus status) {
   return "unknown";
 }
 
-/// Returns some places of a change; `size` is the name of their size, or null.
+/// Returns the number of places of a change, their size and some of them. `size` is the key for the size;
+/// null: leave the size out.
 Json places_json(const RepairPlaces& places, const char* size) {
   Json where = Json::array();
   for (const Point& p : places.where) where.push_back(point_json(p));
@@ -280,7 +281,8 @@ Json measures_json(const TetMesh& mesh, const MeshMeasures& m) {
             {"radius_edge", {{"bin_width", 0.25}, {"tets", m.radius_edges}}}}}};
 }
 
-/// Returns for each feature its number, its measure in the input and in the mesh, and the difference.
+/// Returns for each feature from `first` on its number, its measure in the input and in the mesh, and the
+/// difference in percent.
 Json kept_json(const std::vector<double>& input, const std::vector<double>& mesh, std::size_t first = 0) {
   Json all = Json::array();
   for (std::size_t i = first; i < std::min(input.size(), mesh.size()); ++i)

@@ -42,7 +42,7 @@ void append_creases(std::string& text, const Plc& plc, const std::vector<Crease>
   if (creases.size() > listed) fmt::format_to(Out(text), "    ... and {} more\n", creases.size() - listed);
 }
 
-/// Describes the shapes of tets outside collars. A ratio of 0 means that all of these are thin.
+/// Describes the shapes of tets outside collars. A radius-edge ratio of 0 means that all these tets are thin.
 std::string shape_text(double min_dihedral, double max_dihedral, double max_radius_edge) {
   if (max_dihedral == 0) return "all tets in collars";
   return fmt::format("dihedral angles from {:.2f} to {:.2f} degrees, {}", min_dihedral, max_dihedral,
@@ -103,12 +103,12 @@ void append_curves(std::string& text, const Plc& plc, GroupNames names) {
     fmt::format_to(Out(text), "  ... and {} more curves (--json lists all)\n", curves.size() - listed);
 }
 
-/// Returns a count, with no more digits than a double's precision.
+/// Returns a predicted count: all digits below 10^12, three digits above.
 std::string count_text(double count) {
   return count < 1e12 ? fmt::format("{:.0f}", count) : fmt::format("{:.3g}", count);
 }
 
-/// Describes the difference from the input's volume.
+/// Describes the difference of a region's volume from that in the input; empty if the volumes are unknown.
 std::string off_text(const CheckReport& r, std::size_t region) {
   if (region >= std::min(r.of_input.volumes.size(), r.of_mesh.volumes.size())) return {};
   const double input = r.of_input.volumes[region];

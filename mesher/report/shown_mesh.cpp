@@ -41,7 +41,7 @@ bool meets_middle_plane(const TetMesh& mesh, const std::array<Index, 4>& tet, co
   return false;
 }
 
-/// Adds a point, unless it has a number.
+/// Adds a point and gives it a number, unless it has one.
 void add_point(const TetMesh& mesh, Index p, std::vector<std::uint32_t>& point_number, ShownMesh& shown) {
   if (point_number[p] != none) return;
   point_number[p] = static_cast<std::uint32_t>(shown.points.size() / 3);
@@ -49,7 +49,7 @@ void add_point(const TetMesh& mesh, Index p, std::vector<std::uint32_t>& point_n
     shown.points.push_back(static_cast<float>(mesh.points[p][axis] - shown.centre[axis]));
 }
 
-/// Adds the faces on patches, if all their points are shown.
+/// Adds all faces; they lie on patches. Precondition: all their points have numbers.
 void add_faces(const TetMesh& mesh, const std::vector<std::uint32_t>& point_number, ShownMesh& shown) {
   shown.face_tags = mesh.face_tag;
   sort_uniquely(shown.face_tags);

@@ -13,7 +13,7 @@ struct ShownMesh {
   struct ShownWorst {
     Index tet;                 ///< index among the shown tets
     double smallest, largest;  ///< dihedral angles, degrees
-    Point where;               ///< its centre
+    Point where;               ///< centre of the tet
   };
 
   bool complete = true;               ///< whether all tets of the mesh are included
@@ -27,9 +27,9 @@ struct ShownMesh {
   std::vector<ShownWorst> worst;      ///< the given worst tets
 };
 
-/// Returns all faces of a mesh of triangles; all tets of a mesh with up to `most` of them. For larger meshes
-/// returns the tets with a face on the boundary or an interface, those that meet the planes through the
-/// centre, and the worst ones. Cost: linear.
+/// Returns all faces of a mesh, and all tets if there are at most `most`. If there are more, returns the tets
+/// with a side among the faces, those that meet the planes through the centre orthogonal to an axis, and the
+/// worst ones. Cost: linear.
 ShownMesh shown_mesh(const TetMesh& mesh, const std::vector<WorstTet>& worst, std::size_t most = 100000);
 
 }  // namespace collarmesh::report

@@ -11,9 +11,9 @@ namespace {
 
 using State = TraceStep::State;
 
-/// Makes a mesh from the tets of a step, with the faces between their points. Leaves out tets outside all
-/// regions, unless there are no others. Tets about to be ripped out are marked as both in a collar and thin,
-/// a combination that no other tet has.
+/// Makes a mesh from the tets of a step, and from its triangles on patches whose corners are corners of these
+/// tets. Leaves out tets outside all regions, unless there are no others. Marks tets about to be ripped out
+/// as both in a collar and thin, a combination that no other tet has.
 TetMesh mesh_of(const TraceStep& step) {
   TetMesh mesh;
   mesh.points = step.points;
@@ -39,8 +39,8 @@ TetMesh mesh_of(const TraceStep& step) {
   return mesh;
 }
 
-/// Replaces the tags of faces by indices into the mesh's tags; removes faces with other tags, and faces with
-/// corners that are not shown.
+/// Makes the faces of `cells` refer to the face tags of `mesh`. Removes faces whose tag is not among these,
+/// and faces with corners that are not shown.
 void use_tags_of(const ShownMesh& mesh, ShownMesh& cells) {
   std::vector<std::uint32_t> faces;
   for (std::size_t f = 0; f < cells.faces.size(); f += 4) {

@@ -15,8 +15,8 @@ struct MergedSoup {
 };
 
 /// Merges soups for a file at `path` ("-" is standard output) in `format` (an extension with its dot; empty:
-/// that of the path). For .poly and .smesh also finds points inside the regions and cavities. Throws PlcError
-/// for points that are not finite, indices out of range, and facets to be cut that are not planar.
+/// the path's). For .poly and .smesh also finds points inside the regions and cavities. Throws PlcError for
+/// points that are not finite, indices out of range, and facets to be cut that are not planar.
 MergedSoup merge_for_output(const std::vector<PolygonSoup>& soups, const std::string& path,
                             const std::string& format, const PlcOptions& plc);
 

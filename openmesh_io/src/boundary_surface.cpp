@@ -70,7 +70,7 @@ std::vector<Index> find_neighbours(const std::vector<Triangle>& triangles) {
 
 /// Gives each fan of triangles around a point its own vertex.
 void separate_fans(const std::vector<Index>& neighbour, SelectedSurface& surface) {
-  std::vector<Index> fan(3 * surface.triangles.size());  // by corner, numbered like the side it begins
+  std::vector<Index> fan(3 * surface.triangles.size());  // by corner, numbered like its side; union-find
   std::iota(fan.begin(), fan.end(), 0);
   const auto find = [&fan](Index corner) {
     while (fan[corner] != corner) corner = fan[corner] = fan[fan[corner]];

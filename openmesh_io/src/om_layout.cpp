@@ -70,7 +70,7 @@ class LayoutCheck {
     layout_.safe_bytes = bytes_.substr(0, at_);
   }
 
-  /// Returns false at the sentinel, at the end and at custom properties.
+  /// Reads a chunk. Returns false at the sentinel, at the end and at custom properties.
   bool read_chunk() {
     const std::size_t begin = at_;
     if (at_ == bytes_.size()) return false;
@@ -88,7 +88,7 @@ class LayoutCheck {
       read_positions(chunk, count);
     else
       skip(count * chunk.components * chunk.value_bytes, "the values of a chunk");
-    // Old files do not contain the number of faces that OpenMesh will make.
+    // Skip the status of faces in old files: OpenMesh may make fewer faces than they list.
     const bool needed =
         positions || chunk.values == Values::topology || (face_status && version_ >= version_2);
     if (needed) layout_.safe_bytes.append(bytes_.substr(begin, at_ - begin));

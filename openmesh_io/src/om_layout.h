@@ -11,7 +11,7 @@ namespace collarmesh::openmesh_io {
 struct OmLayout {
   std::uint32_t vertices = 0, faces = 0, edges = 0;
   /// The data that is needed and safe to read: the header and the chunks of positions, topology and deleted
-  /// faces, without custom properties and data after them.
+  /// faces, up to the first custom property.
   std::string safe_bytes;
 };
 

@@ -38,7 +38,7 @@ def faults(table, tests):
 
 
 def renewed(text, counted):
-    """Returns the table with the counts of the tests, the last one of each key; the other columns stay."""
+    """Returns the table with the counts of the tests (for each key the last one); the other columns stay."""
     counts = dict(line.split("\t") for line in counted.splitlines())
     lines = []
     for line in text.splitlines(keepends=True):

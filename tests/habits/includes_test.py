@@ -46,7 +46,7 @@ def target_of(root, source, name):
 
 
 def arrows(root):
-    """Returns every include between two folders: (from, to, source)."""
+    """Yields every include between two folders, except of public headers: (from, to, source)."""
     for top in ("mesher", "openmesh_io", "freecad_workbench"):
         for path in sorted((root / top).rglob("*")):
             source = path.relative_to(root)

@@ -16,10 +16,10 @@ SLOWEST = 25
 
 # Tests that only run on a machine without Scotch, and those of the Python package, which need venv, pip and mypy.
 OTHERS = r"Partition\.WithoutScotch|python\.(install|types)$"
-# Tests with files beside the sources, by the variable that names the folder.
+# Tests that need files which are not among the sources, by the variable that names the files.
 WITH_FILES = {"COLLARMESH_CORPUS": r".*Corpus|corpus$|acute_families$", "COLLARMESH_REAL": r"real_parts$",
               "COLLARMESH_JUDGE": r"corpus$|acute_families$|real_parts$"}
-# Reasons for which a case of a test in Python may be skipped: it is about a program that lacks something.
+# Reasons for which a case of a test in Python may be skipped.
 REASONS = ["built with HDF5"]
 REASONS_WITH_FILES = {"COLLARMESH_REAL": ["no CAD files beside the sources"]}
 
@@ -44,7 +44,7 @@ def skipped_cases(log):
     """Yields a text for each case that a test skipped, and whether it may be skipped."""
     for name, output in outputs(log):
         for case in re.findall(r"^\[  SKIPPED \] (\S+)(?:, where GetParam.*)? \(\d+ ms\)$", output, re.M):
-            if case != name:  # not the whole test, which is in the results
+            if case != name:  # a whole test is in the results already
                 yield f"{name}: {case}", may_be_skipped(case)
         # unittest names the reasons only where it names each case (-v), but always says how many there are.
         reasons = re.findall(r"\bskipped (?:'(.*)'|\"(.*)\")$", output, re.M)

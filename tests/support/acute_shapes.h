@@ -12,87 +12,89 @@ namespace collarmesh::testing::acute {
 
 struct Shape {
   std::string name;                ///< the call that makes it
-  std::vector<PolygonSoup> soups;  ///< one complex
+  std::vector<PolygonSoup> soups;  ///< together they are one complex
   double volume = 0;               ///< volume of all regions together, for planar shapes
   double feature_angle = 0;        ///< 30 for curved shapes
 };
 
-/// A prism over a triangle with this angle between two sides of length 1.
+/// Returns a prism over a triangle with this angle between two sides of length 1.
 Shape wedge(double angle, double length = 1);
 
-/// A unit wedge and a similar one of this size just above its top, with a gap as wide as the small one.
+/// Returns a unit wedge and a similar one of this size just above its top, with a gap as wide as the small
+/// one.
 Shape wedge_on_a_large_one(double angle, double small);
 
-/// A box with k rectangles inside that share one segment, at equal angles or, if seed > 0, at random ones of
-/// at least a third of that.
+/// Returns a box with k rectangles inside that share one segment. The angles between neighbours are equal or,
+/// if seed > 0, random and at least a third of their mean.
 Shape fan(unsigned k, std::uint32_t seed = 0);
 
-/// A prism over a regular k-gon cut into k regions that share its axis.
+/// Returns a prism over a regular k-gon cut into k regions that share its axis.
 Shape sectors(unsigned k);
 
-/// A pyramid of height 1 over a regular k-gon. `apex_angle` is between opposite sides of the cone around it;
+/// Returns a pyramid of height 1 over a regular k-gon. `apex_angle` is the apex angle of the cone around it;
 /// a few degrees make it a needle.
 Shape pyramid(unsigned k, double apex_angle);
 
-/// A pyramid over a random polygon around the origin, its apex anywhere above it.
+/// Returns a pyramid over a random polygon around the origin, its apex anywhere above it.
 Shape random_pyramid(std::uint32_t seed);
 
-/// A prism over a star with this many points; its inner corners have this radius, the outer ones 1.
+/// Returns a prism over a star with this many points; its inner corners have this radius, the outer ones 1.
 Shape star_prism(unsigned points, double inner_radius);
 
-/// A prism over a star with random radii.
+/// Returns a prism over a star with random radii.
 Shape random_star_prism(unsigned points, std::uint32_t seed);
 
-/// An octahedron with a spike of this height on every side.
+/// Returns an octahedron with a spike of this height on every side.
 Shape spiked_octahedron(double height);
 
-/// A blade that is sharpened to this angle along one side and ends in a point.
+/// Returns a blade that is sharpened to this angle along one side and ends in a point.
 Shape knife(double angle);
 
-/// Two knives with a common sharp side.
+/// Returns two knives with a common sharp side.
 Shape two_knives(double angle, double gap_angle);
 
-/// Two wedges that touch along their sharp edges only; the angle between them is the gap.
+/// Returns two wedges that touch along their sharp edges only; the angle between them is the gap.
 Shape wedges_touching_in_an_edge(double angle, double gap_angle);
 
-/// Two cubes that touch in an edge, one turned about it by this angle.
+/// Returns two cubes that touch in an edge, one turned about it by this angle.
 Shape cubes_touching_in_an_edge(double gap_angle);
 
-/// Two pyramids that touch only with their tips: both upright, or one lying beside the other with a gap.
+/// Returns two pyramids that touch only with their tips: both upright, or one lying beside the other with a
+/// gap.
 Shape pyramids_tip_to_tip(unsigned k, double apex_angle);
 
-/// Two cubes that touch in a corner only.
+/// Returns two cubes that touch in a corner only.
 Shape cubes_touching_in_a_corner();
 
-/// A pyramid whose tip stands on the side of a box, as two solids.
+/// Returns a pyramid whose tip stands on the side of a box, as two solids.
 Shape pyramid_on_a_box(double apex_angle);
 
-/// A box with a facet that rises from its bottom at this angle and ends inside.
+/// Returns a box with a facet that rises from its bottom at this angle and ends inside.
 Shape facet_ending_inside(double angle);
 
-/// A box with a segment that rises from a point in its bottom at this angle and ends inside.
+/// Returns a box with a segment that rises from a point in its bottom at this angle and ends inside.
 Shape segment_meeting_a_facet(double angle);
 
-/// A box with some segments from one point inside, in random directions.
+/// Returns a box with some segments from one point inside, in random directions.
 Shape segments_from_a_point(unsigned count, std::uint32_t seed);
 
-/// A unit box with some pairs of facets inside that meet at 20 degrees and have edges of this length. Nothing
-/// else is of this size.
+/// Returns a unit box with some pairs of facets inside that meet at 20 degrees and have edges of this length.
+/// Nothing else is of this size.
 Shape pairs_in_a_box(unsigned count, double size, std::uint32_t seed = 1);
 
-/// A wedge with a lone segment inside, parallel to its sharp edge at this distance or askew.
+/// Returns a wedge with a lone segment inside, parallel to its sharp edge at this distance or askew.
 Shape segment_near_a_crease(double angle, double distance, bool askew = false);
 
-/// A wedge with a dangling facet inside, whose border passes its sharp edge at this distance.
+/// Returns a wedge with a dangling facet inside, whose border passes its sharp edge at this distance.
 Shape facet_near_a_crease(double angle, double distance);
 
-/// A bar with triangular teeth of height 1 and the given angle at their tips.
+/// Returns a bar with triangular teeth of height 1 and the given angle at their tips.
 Shape comb(unsigned teeth, double angle);
 
-/// A tetrahedron of random corners, not too flat.
+/// Returns a tetrahedron of random corners, not too flat.
 Shape random_tetrahedron(std::uint32_t seed);
 
-/// Members of the planar families with random parameters, turned at random.
+/// Returns members of the planar families with random parameters, turned at random.
 std::vector<Shape> random_members(std::uint32_t seed);
 
 /// Turns a shape by a random rotation.
@@ -101,19 +103,20 @@ Shape turned(Shape shape, std::uint32_t seed);
 /// Curved sharp rims. Their features need the feature angle 30.
 Shape round_cone(double half_angle);
 Shape lens(double rim_angle);
-/// The upper part of a torus of radii 1 and 0.25, above a plane at this share of the minor radius.
+/// Returns the upper part of a torus of radii 1 and 0.25, above a plane at this share of the minor radius.
 Shape cut_torus(double plane);
-/// A lens over a stadium of length 2 plus its width: the sharp rim comes back close to itself.
+/// Returns a lens over a stadium of length 2 plus its width: the sharp rim comes back close to itself.
 Shape long_lens(double rim_angle, double width);
-/// A bar of length 1 over a drop: its only side is one smooth patch that meets itself at this angle.
+/// Returns a bar of length 1 over the outline of a drop: its only side is one smooth patch that meets itself
+/// at this angle.
 Shape drop_bar(double angle);
-/// A cone of height 1 over a drop: its only side is one smooth patch, folded along a curve that is no crease
-/// and ends at the acute apex.
+/// Returns a cone of height 1 over the outline of a drop: its only side is one smooth patch, folded along a
+/// curve that is no crease and ends at the acute apex.
 Shape drop_cone(double angle, double apex_angle);
-/// Only the side of such a cone, inside a box.
+/// Returns only the side of a drop_cone, inside a box.
 Shape drop_cone_in_a_room(double angle, double apex_angle);
-/// A box with a sheet that rises from its bottom at this angle, becomes steeper by 60 degrees and ends
-/// inside.
+/// Returns a box with a sheet that rises from its bottom at this angle, becomes steeper by 60 degrees and
+/// ends inside.
 Shape curved_facet_ending_inside(double angle);
 
 }  // namespace collarmesh::testing::acute

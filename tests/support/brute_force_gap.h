@@ -22,7 +22,7 @@ double brute_force_gap(const Plc& plc, const Point& p, const Containing& feature
 
 double distance_to_segment(const Point& p, const Point& a, const Point& b);
 
-/// Returns points inside the segments of a curve.
+/// Returns evenly spaced points inside each segment of a curve.
 std::vector<Point> points_along(const Plc& plc, Index curve, unsigned per_segment);
 
 }  // namespace collarmesh::testing

@@ -14,7 +14,7 @@ namespace {
 
 struct ExpectedCount {
   double count = 0, least_ratio = 0, most_ratio = 0;
-  std::string counted;  ///< a text for people
+  std::string counted;  ///< says for people what is counted
 };
 
 std::map<std::string, ExpectedCount> read_expected_counts() {

@@ -13,8 +13,8 @@ namespace collarmesh::testing {
 /// Prisms, pyramids and tets that conform. At z = 0 there are four quadrangles around one inner node. Below
 /// them lie six prisms, of region 1; above them four pyramids, four tets between these, and a pyramid upside
 /// down, of region 2. The quadrangles at z = 0 are the interface (tag 7); the boundary has the tag -5 below
-/// and 6 above, four of its edges the tag 11. `make_prisms` makes another mesh: eight prisms on a square with
-/// a tet on each, without pyramids.
+/// and 6 above; four edges at z = 0 have the tag 11. `make_prisms` makes another mesh: eight prisms on a
+/// square with a tet on each, without pyramids.
 class LayerMesh {
  public:
   static constexpr double volume_below = 3, volume_above = 49.0 / 30;
@@ -143,7 +143,7 @@ class LayerMesh {
     }
   }
 
-  /// Lists the sides of one cell, and those between the regions.
+  /// Lists the sides that only one cell has, and the sides between the regions.
   void list_sides() {
     for (const auto& [key, sides] : sides_) {
       if (sides.size() == 2 && sides[0].region == sides[1].region) continue;

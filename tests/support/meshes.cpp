@@ -30,8 +30,8 @@ bool is_on_triangle(const Point& p, const Point& a, const Point& b, const Point&
 
 using Corners = std::array<Index, 3>;
 
-// Adds the faces, edges and features of a mesh whose points lie exactly on those of a complex, by brute
-// force. Each face or edge on a feature has a corner that distinguishes it from others.
+// Adds the faces, edges and features of a mesh whose points lie exactly on the features of a complex, by
+// brute force. Precondition: triangles and edges whose corners all lie on a patch or curve lie on it, too.
 class FeatureMaker {
  public:
   FeatureMaker(TetMesh& mesh, const Plc& plc) : mesh_(mesh), plc_(plc) {}
@@ -142,7 +142,7 @@ class FeatureMaker {
   std::vector<std::vector<Index>> curves_, patches_;  // by point
 };
 
-// A grid of nx * ny * nz cubes with edges 1 / n, each cut into the six tets around its diagonal.
+// Returns a grid of n * n * layers cubes with edges 1 / n, each cut into the six tets around its diagonal.
 TetMesh kuhn_mesh(Index n, Index layers) {
   TetMesh mesh;
   for (Index z = 0; z <= layers; ++z)

@@ -12,8 +12,8 @@
 /// Maps of periodic faces for meshes that no mesher made, by brute force.
 namespace collarmesh::testing {
 
-/// The unit cube, divided into 27 boxes at these places along each axis. In the periodic pattern the cube's
-/// faces, edges and corners cut boxes.
+/// Returns the unit cube, divided into 27 boxes at these places along each axis. In the periodic pattern the
+/// cube's faces, edges and corners cut larger boxes into these.
 inline PolygonSoup cell_of_boxes(const std::array<double, 4>& cuts) {
   std::vector<PolygonSoup> boxes;
   for (unsigned i = 0; i < 3; ++i)
@@ -29,7 +29,7 @@ inline TetMesh::Motion translation(const Vector& shift) {
   return motion;
 }
 
-/// A rotation about the z axis by a right angle.
+/// Returns a rotation about the z axis by a right angle.
 inline TetMesh::Motion quarter_turn() {
   TetMesh::Motion motion;
   motion.rows = {Vector{0, -1, 0}, Vector{1, 0, 0}, Vector{0, 0, 1}};

@@ -10,20 +10,20 @@
 /// Shapes for tests of the complex. Facets of closed shapes have their normals outwards.
 namespace collarmesh::testing {
 
-/// A box of six quadrangles.
+/// Returns a box of six quadrangles.
 PolygonSoup polygonal_box(const Point& min, const Point& max);
-/// A box whose sides are n x n squares of two triangles each.
+/// Returns a box whose sides are n x n squares of two triangles each.
 PolygonSoup subdivided_box(const Point& min, const Point& max, Index n);
-/// A cylinder around the z axis: one layer of quadrangles between two polygons of n corners.
+/// Returns a cylinder around the z axis: one layer of quadrangles between two polygons of n corners.
 PolygonSoup polygonal_cylinder(Index n, double radius, double height);
-/// A cone: triangles from a regular n-gon in the plane z = 0 to an apex above its centre, closed by the
-/// n-gon.
+/// Returns a cone: triangles from a regular n-gon in the plane z = 0 to an apex above its centre, closed by
+/// the n-gon.
 PolygonSoup polygonal_cone(Index n, double aperture_degrees, double height);
-/// A prism along the z axis over the triangle of two unit sides that form this angle at the origin.
+/// Returns a prism along the z axis over the triangle of two unit sides that form this angle at the origin.
 PolygonSoup wedge(double angle_degrees, double length);
-/// A sphere: an octahedron with sides cut in n, its points moved onto the unit sphere around `centre`.
+/// Returns a sphere: an octahedron with edges cut in n, its points moved onto the sphere around `centre`.
 PolygonSoup sphere(Index n, double radius, const Point& centre);
-/// A band of n quadrangles, each cut in two, with a half twist.
+/// Returns a band of n quadrangles, each cut in two, with a half twist.
 PolygonSoup moebius_strip(Index n);
 
 /// Returns the facets with their normals reversed.

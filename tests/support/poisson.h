@@ -7,7 +7,7 @@
 /// A small finite element solver, which judges meshes as their users do.
 namespace collarmesh::testing {
 
-/// A function, with the data of it that the Poisson problem -div grad u = f needs.
+/// The exact solution u of a Poisson problem -div grad u = f, with its data.
 struct Solution {
   std::function<double(const Point&)> value;
   std::function<Vector(const Point&)> gradient;
@@ -31,7 +31,7 @@ struct PoissonErrors {
 /// there are no inner nodes or the matrix is not positive definite.
 PoissonErrors solve_poisson(const TetMesh& mesh, const Solution& exact, bool with_condition_number = false);
 
-/// A smooth solution that is no polynomial; all its derivatives have the magnitude of one.
+/// Returns a smooth solution that is no polynomial; all its derivatives are of the order of 1.
 Solution smooth_solution();
 
 }  // namespace collarmesh::testing

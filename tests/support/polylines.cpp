@@ -60,7 +60,7 @@ Vector any_direction(std::mt19937& random) {
 
 Shape shape_of(std::string name, PolygonSoup soup) { return {std::move(name), {std::move(soup)}, 1}; }
 
-// A zigzag from 0.2 to 0.8 along an axis, to both sides of it.
+// Returns a zigzag between two parallel lines, from 0.2 to 0.8 along them; the first line is the axis.
 std::vector<Point> zigzag(unsigned segments, double angle, const std::function<Point(double, double)>& at) {
   const double step = 0.6 / segments, height = step / std::tan(angle / 2 * pi / 180);
   std::vector<Point> points;
@@ -99,7 +99,8 @@ Shape helices(unsigned n) {
 
 Shape torus_knot(unsigned n) {
   PolygonSoup soup = room();
-  // So many strands per length cross a cut of the tube, 2 pi 0.12 long; the torus is 2 pi 0.28 long.
+  // The number of strands per length with which neighbours are about as far apart as segments are long. The
+  // torus is 2 pi 0.28 long and 2 pi 0.12 around.
   const double per_length = std::sqrt(n / (2 * pi * 0.12 * 2 * pi * 0.28));
   const auto around = std::max(2U, static_cast<unsigned>(2 * pi * 0.12 * per_length));
   const unsigned along = around + 1;  // coprime numbers make one strand

@@ -33,7 +33,7 @@ inline facets::ComplexDraft draft_of(std::span<const PolygonSoup> soups, bool to
 }
 inline facets::ComplexDraft draft_of(const PolygonSoup& soup) { return draft_of({&soup, 1}); }
 
-/// Returns the draft with its corners at (0, 0, 0) and (6, 0, 0) moved a little.
+/// Returns the draft with its triangles' corners at (0, 0, 0) and (6, 0, 0) moved to new points nearby.
 inline facets::ComplexDraft with_moved_corners(facets::ComplexDraft draft) {
   for (const double x : {0.0, 6.0}) {
     const auto moved = static_cast<Index>(draft.points.size());

@@ -46,20 +46,20 @@ PolygonSoup joined(std::span<const PolygonSoup> soups);
 
 // Shapes
 
-/// Boxes whose corners are multiples of 1/4 between 0 and `grid` / 4: many share faces and edges, overlap in
-/// faces, touch or lie inside each other. No two are equal.
+/// Returns boxes whose corners are multiples of 1/4 between 0 and `grid` / 4: many share faces and edges,
+/// overlap in faces, touch or lie inside each other. No two are equal.
 std::vector<Box> random_boxes(Random& random, unsigned count, unsigned grid);
 PolygonSoup soup_of(const Box& box);
 
-/// The unit box with a rectangle (tag 7) across it at z = height; with `share` < 1 it ends inside. Its
-/// corners lie on sides of the box, or `overhang` outside.
+/// Returns the unit box with a rectangle (tag 7) across it at z = height; with `share` < 1 it ends inside.
+/// Its corners lie on sides of the box, or `overhang` outside.
 PolygonSoup box_with_wall(double height, double share, double overhang = 0);
 
-/// A prism of height 1 over a regular k-gon of radius 1 with a twisted top. Its sides are quadrangles that
-/// are not planar, or two triangles each.
+/// Returns a prism of height 1 over a regular k-gon of radius 1 with a twisted top. Its sides are quadrangles
+/// that are not planar, or two triangles each.
 PolygonSoup twisted_prism(unsigned k, double degrees, bool quadrangles);
 
-/// Two spheres of radius 1 and `inner`, either of which may be turned inside out.
+/// Returns two spheres of radius 1 and `inner`, either of which may be turned inside out.
 PolygonSoup nested_spheres(double inner, bool outer_inverted, bool inner_inverted);
 
 struct OpenSphere {
@@ -67,7 +67,7 @@ struct OpenSphere {
   std::vector<Point> holes;        ///< centres of the holes
   std::vector<std::size_t> edges;  ///< number of edges around each hole
 };
-/// A unit sphere without the facets around some of its points, which are far from each other.
+/// Returns a unit sphere without the facets around some of its points, which are far from each other.
 OpenSphere sphere_with_holes(Random& random, unsigned frequency, unsigned holes);
 
 /// Repeats some facets, in the same or in the opposite orientation.
@@ -75,21 +75,21 @@ PolygonSoup with_repeated_facets(const PolygonSoup& soup, Random& random, unsign
 /// Reverses some facets.
 PolygonSoup with_inverted_facets(const PolygonSoup& soup, Random& random, unsigned count);
 
-/// The unit box with some sides cut into n x n squares, whose corners lie on edges of other sides.
+/// Returns the unit box with some sides cut into n x n squares, whose corners lie on edges of other sides.
 PolygonSoup box_with_t_junctions(Random& random, unsigned n);
 
-/// A cube of edge 1 with a slot of this width from above, half as deep as the cube.
+/// Returns a cube of edge 1 with a slot of this width from above, half as deep as the cube.
 PolygonSoup slotted_box(double width);
-/// A cube of edge 1 with a fin of this width and height 1/2 on top.
+/// Returns a cube of edge 1 with a fin of this width and height 1/2 on top.
 PolygonSoup finned_box(double width);
-/// A cube of edge 1 with a pyramid of this width and height 1/2 on top; its base lies in a facet of
-/// triangles.
+/// Returns a cube of edge 1 with a pyramid of this width and height 1/2 on top; the facet around its base is
+/// cut into triangles.
 PolygonSoup spiked_box(double width);
 
-/// A block whose upper side is a landscape of n x n squares that folds over and through itself.
+/// Returns a block whose upper side is a landscape of n x n squares that folds over and through itself.
 PolygonSoup folded_terrain(Random& random, unsigned n, double fold);
 
-/// Moves a soup by `distance` along a random direction, and rounds coordinates to 32 bits.
+/// Moves a soup by `offset`, and rounds coordinates to single precision.
 PolygonSoup in_single_precision(const PolygonSoup& soup, const Vector& offset);
 
 // Oracles

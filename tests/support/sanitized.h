@@ -12,7 +12,7 @@ namespace collarmesh::testing {
 #define COLLARMESH_SANITIZED
 #endif
 
-/// Whether AddressSanitizer is on, with which work takes tens of times as long.
+/// Says whether AddressSanitizer is on, which makes the code tens of times slower.
 #if defined(COLLARMESH_SANITIZED)
 constexpr bool sanitized = true;
 #else

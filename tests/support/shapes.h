@@ -10,73 +10,74 @@
 /// Inputs for tests. No two features meet at an acute angle unless the comment says so.
 namespace collarmesh::testing {
 
-/// A box whose sides have the tags 1 (x min), 2 (x max), 3, 4 (y), 5, 6 (z); each side is n x n
+/// Returns a box whose sides have the tags 1 (x min), 2 (x max), 3, 4 (y), 5, 6 (z); each side is n x n
 /// rectangles.
 PolygonSoup box(const Point& min = {0, 0, 0}, const Point& max = {1, 1, 1}, unsigned n = 1);
 
-/// A polygon (counterclockwise in x, y) extruded from z = 0 to the height; caps 1 (bottom) and 2 (top), sides
-/// from 3.
+/// Returns a polygon (counterclockwise in x, y) extruded from z = 0 to the height; caps 1 (bottom) and 2
+/// (top), sides from 3.
 PolygonSoup extrusion(std::span<const Point> polygon, double height);
 
-/// Three unit cubes in an L, as an extrusion.
+/// Returns three unit cubes in an L, as an extrusion.
 PolygonSoup l_shape();
 
-/// A regular k-gon extruded, with the corners on the unit circle.
+/// Returns a regular k-gon extruded, with the corners on the unit circle.
 PolygonSoup regular_prism(unsigned k, double height = 1);
 
 /// Rotates the profile (x the radius, z the height, from bottom to top) about the z axis; all triangles have
 /// tag 1. The profile starts and ends on the axis, or is closed (without repeating its first point).
 PolygonSoup revolution(std::span<const Point> profile, unsigned segments, bool closed = false);
 
-/// A sphere of 20 f^2 nearly regular triangles. The points of frequency f are among those of frequency k f.
+/// Returns a sphere of 20 f^2 nearly regular triangles. The points of frequency f are among those of
+/// frequency k f.
 PolygonSoup icosphere(double radius, unsigned frequency);
-/// A sphere with approximately this number of triangles.
+/// Returns a sphere with approximately this number of triangles.
 PolygonSoup icosphere_of(double radius, std::size_t triangles);
 
 PolygonSoup uv_sphere(double radius, unsigned rings, unsigned segments);
 PolygonSoup cylinder(double radius, double height, unsigned segments, unsigned rings = 1);
 PolygonSoup torus(double major, double minor, unsigned major_segments, unsigned minor_segments);
 
-/// A cone. Its apex is acute, and its rim, too, if it is slender.
+/// Returns a cone. Its apex is acute if the cone is slender, and its rim if the cone is flat.
 PolygonSoup cone(double radius, double height, unsigned segments, unsigned rings = 1);
 
-/// A sphere of radius 1 with a filleted, rounded spike of the given radius and height on its pole:
+/// Returns a sphere of radius 1 with a filleted, rounded spike of the given radius and height on its pole:
 /// one smooth patch.
 PolygonSoup spiked_sphere(double spike_radius, double spike_height, unsigned segments = 48);
 
-/// The unit box with a cubic cavity of the given edge length near its centre.
+/// Returns the unit box with a cubic cavity of the given edge length near its centre.
 PolygonSoup box_with_cavity(double size);
 
-/// The unit box with a square facet (tag 7) of the given edge length in its top side.
+/// Returns the unit box with a square facet (tag 7) of the given edge length in its top side.
 PolygonSoup box_with_small_facet(double size);
 
-/// The unit box on a second one, as one complex. The facet between them (tag 7) occurs once, and region
-/// points give the boxes the tags 10 (below) and 20.
+/// Returns the unit box on a second one, as one complex. The facet between them (tag 7) occurs once, and
+/// region points give the boxes the tags 10 (below) and 20.
 PolygonSoup two_boxes();
-/// Two boxes as two closed surfaces that touch.
+/// Returns two boxes as two closed surfaces that share a side.
 std::vector<PolygonSoup> touching_boxes();
 
-/// Two bodies that meet only in a straight edge, and two rings that meet only in a circle.
+/// Returns two bodies that meet only in a straight edge; below, two rings that meet only in a circle.
 std::vector<PolygonSoup> boxes_touching_in_an_edge();
 std::vector<PolygonSoup> rings_touching_in_a_circle();
 
-/// The unit box with a free square facet (tag 7) of the given edge length inside.
+/// Returns the unit box with a free square facet (tag 7) of the given edge length inside.
 PolygonSoup box_with_dangling_facet(double size = 0.4);
 
-/// The unit box with n points on each of two skew lines inside.
+/// Returns the unit box with n points on each of two skew lines inside.
 PolygonSoup box_with_skew_lines(unsigned n);
 
-/// Boxes inside each other, all oriented outwards, the largest first.
+/// Returns boxes inside each other, all oriented outwards, the largest first.
 std::vector<PolygonSoup> nested_boxes(unsigned levels);
 
-/// A plate 4 x 4 x 1 with a round hole: facets with holes, and a smooth one (tag 7).
+/// Returns a plate 4 x 4 x 1 with a round hole: facets with holes, and a smooth one (tag 7).
 PolygonSoup plate_with_hole(double radius, unsigned segments);
 
-/// A prism over a random convex polygon with obtuse corners, turned and slightly sheared.
+/// Returns a prism over a random convex polygon with obtuse corners, turned and slightly sheared.
 PolygonSoup random_prism(std::uint32_t seed);
 
-/// The convex hull of random points on a sphere, made of triangles, so its segments meet at acute angles.
-/// Precondition: at most about 40 points.
+/// Returns the convex hull of random points on a sphere, made of triangles, so its segments meet at acute
+/// angles. Precondition: at most about 40 points.
 PolygonSoup random_hull(std::uint32_t seed, unsigned points);
 
 /// Applies a map to every point of a soup. The map must keep the orientation and planes.

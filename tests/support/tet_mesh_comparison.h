@@ -6,7 +6,7 @@
 
 namespace collarmesh::testing {
 
-/// Expects that every array is equal to the last bit.
+/// Expects that all arrays of the two meshes are equal to the last bit.
 inline void expect_same(const TetMesh& a, const TetMesh& b) {
   EXPECT_EQ(a.points, b.points);
   EXPECT_EQ(a.tets, b.tets);

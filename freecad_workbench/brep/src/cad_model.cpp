@@ -41,7 +41,7 @@ double diagonal_of(const TopoDS_Shape& shape) {
   return box.IsVoid() ? 0 : std::sqrt(box.SquareExtent());
 }
 
-/// Returns the faces' numbers with their distances, nearest first.
+/// Returns the distances of the faces' nearest points from a place, with the faces' numbers; nearest first.
 std::vector<std::pair<double, int>> faces_by_distance(const Tessellation& tessellation, const Point& where) {
   std::vector<std::pair<double, int>> faces;
   for (const auto& [number, pieces] : tessellation.faces) {

@@ -35,7 +35,7 @@ using Parameters = std::array<double, 2>;
 
 Ends sorted(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
 
-/// Returns the sides that an odd number of triangles share.
+/// Returns the sides that belong to an odd number of triangles, with this number.
 std::map<Ends, int> odd_sides(const std::vector<std::array<Index, 3>>& triangles) {
   std::map<Ends, int> uses;
   for (const auto& t : triangles)
@@ -70,7 +70,7 @@ void triangulate(const TopoDS_Shape& shape, double deflection, double angle) {
   const BRepMesh_IncrementalMesh mesh(shape, parameters);
 }
 
-/// Returns a face's own triangles, none if it has none.
+/// Returns the triangulation that is stored with a face; without triangles if there is none.
 MendedFace triangles_on(const TopoDS_Face& face) {
   MendedFace own;
   own.face = face;
@@ -105,7 +105,7 @@ class Mender {
 
   MendedFace run() {
     constexpr double coarse =
-        4;  // factor of the deflection; finer ones rarely help, and take minutes if an outline crosses itself
+        4;  // factor of the deflection; below 1 rarely helps, and takes minutes if an outline crosses itself
     try_way([&] { return alone(copied(face_), "alone"); });
     try_way([&] { return alone(healed(face_), "alone after shape healing"); });
     try_way([&] { return in_parameter_plane(); });
@@ -161,7 +161,7 @@ class Mender {
     return nearest;
   }
 
-  /// Triangulates the outline without inner points.
+  /// Returns the outline's nodes as points, without triangles.
   MendedFace bare() const {
     MendedFace result;
     result.face = face_;
@@ -208,7 +208,8 @@ class Mender {
     return sum;
   }
 
-  /// Returns the nodes of a patch of the surface around the outline, without those close to the outline.
+  /// Returns scaled parameters of inner nodes: those of a triangulated patch of the surface, as large as the
+  /// outline's box, except nodes close to the outline.
   std::vector<Parameters> inner_parameters(const std::vector<Parameters>& outline,
                                            const Parameters& scale) const {
     std::vector<Parameters> inner;
@@ -241,8 +242,8 @@ class Mender {
     });
   }
 
-  /// Triangulates in the plane orthogonal to the outline's area vector, if the triangles are then on the
-  /// surface.
+  /// Triangulates the outline in the plane orthogonal to its area vector. Returns no triangles if chords
+  /// cross there, or if a triangle's centre is far from the surface.
   MendedFace in_fitted_plane() const {
     MendedFace result = bare();
     result.how = "from its outline in a fitted plane";
@@ -282,8 +283,8 @@ class Mender {
     for (auto& t : mended.triangles) std::swap(t[1], t[2]);
   }
 
-  static constexpr Index first_own = Index(1) << 31U;  // numbers of the face's own points, after the shape's
-                                                       // points
+  static constexpr Index first_own = Index(1) << 31U;  // first number of the face's own points, above the
+                                                       // numbers of the shape's points
 
   const TopoDS_Face& face_;
   const Outline& outline_;

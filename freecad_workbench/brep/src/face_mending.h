@@ -12,7 +12,7 @@ namespace collarmesh::brep {
 /// The outline of a face, with the points that its neighbours use. A node is a point with parameters; points
 /// of a seam have two nodes.
 struct Outline {
-  std::vector<Index> points;  ///< by node: index in the shape's tessellation
+  std::vector<Index> points;  ///< by node: its point's index in the shape's tessellation
   std::vector<Point> places;
   std::vector<std::array<double, 2>> parameters;
   std::vector<std::array<Index, 2>> chords;  ///< chords between nodes
@@ -23,10 +23,10 @@ struct MendedFace {
   TopoDS_Face face;  ///< possibly healed; the parameters refer to its surface
   std::vector<Point> points;
   std::vector<std::array<double, 2>> parameters;  ///< one per point, or empty
-  std::vector<Index> outline_points;              ///< one per point: index in the outline, or none
-  std::vector<std::array<Index, 3>> triangles;    ///< none: all ways failed
+  std::vector<Index> outline_points;              ///< one per point: `Outline::points` of its node, or none
+  std::vector<std::array<Index, 3>> triangles;    ///< empty: all ways failed
   bool fits = false;                              ///< whether the border of the triangles is the outline
-  std::string how;  ///< the way that was used, for a note: "alone after shape healing"
+  std::string how;  ///< the way that was used, for a note, such as "alone after shape healing"
 };
 
 /// Triangulates a face for which the tessellation of the whole shape fails, by the first of these ways that

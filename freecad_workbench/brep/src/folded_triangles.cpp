@@ -35,7 +35,7 @@ class SidedTriangles {
   /// Returns the triangle on the other side of a side; none if there is none.
   Index across(Index t, Index i) const { return triangle_at(corner(t, i + 1), corner(t, i)); }
 
-  /// Returns the flip of a side; nothing if the new side exists already or there is no triangle behind it.
+  /// Returns the flip of a side; nothing if the new side exists already or no triangle is on the other side.
   std::optional<Flip> flip_of(Index t, Index side) const {
     const Index a = corner(t, side), b = corner(t, side + 1), c = corner(t, side + 2),
                 other = across(t, side);
@@ -84,7 +84,7 @@ class Flipper : SidedTriangles {
   }
 
  private:
-  /// Returns the side i that passes through the opposite corner; none if there is none.
+  /// Returns the longest side if the opposite corner is within `height_` of it; else none.
   Index side_with_corner_on_it(Index t) const {
     Index longest = 0;
     for (Index i = 1; i < 3; ++i)
@@ -95,7 +95,7 @@ class Flipper : SidedTriangles {
   }
   double length(Index t, Index i) const { return distance(points_[corner(t, i)], points_[corner(t, i + 1)]); }
 
-  /// Flips a side. Returns the triangle on its other side; none if the side stays.
+  /// Flips a side. Returns the number of the second triangle that this changed; none if the side stays.
   Index flip(Index t, Index side) {
     const std::optional<Flip> found = flip_of(t, side);
     if (!found) return none;
@@ -108,7 +108,7 @@ class Flipper : SidedTriangles {
   double height_;
 };
 
-/// The triangles of a face with their neighbours.
+/// The triangles of a face, whose folds it removes by edge flips and edge collapses.
 class Unfolder : SidedTriangles {
  public:
   Unfolder(const std::vector<Point>& points, std::vector<Triangle>& triangles)
@@ -143,8 +143,8 @@ class Unfolder : SidedTriangles {
   }
   std::size_t folds_at(Index t) const { return folds_around(std::span(&t, 1), {}); }
 
-  /// Returns the number of folds between some triangles and their surroundings. If `as` is not empty, it
-  /// replaces the triangles' corners; their outer sides stay.
+  /// Returns the number of sides of some triangles at which the surface is folded. If `as` is not empty,
+  /// counts as if it had replaced these triangles; it has the same border.
   std::size_t folds_around(std::span<const Index> some, std::span<const Triangle> as) const {
     std::vector<Triangle> shapes(as.begin(), as.end());
     if (as.empty())
@@ -206,7 +206,8 @@ class Unfolder : SidedTriangles {
     return {};
   }
 
-  /// Collapses an edge of a corner inside the face if that leaves fewer folds.
+  /// Collapses an edge at a corner inside the face if that leaves fewer folds and the surface near the
+  /// corner.
   bool collapse_one(Index t, Index first_inner, double distance) {
     for (Index i = 0; i < 3; ++i) {
       const Index p = corner(t, i);
@@ -226,8 +227,8 @@ class Unfolder : SidedTriangles {
     return false;
   }
 
-  /// Returns triangles that fill a star without its centre, all with this corner; empty if an edge exists
-  /// already.
+  /// Returns triangles that fill a star after its centre is removed, all with the corner `apex`; empty if one
+  /// of their new edges exists already.
   std::vector<Triangle> fan_from(Index apex, const std::vector<Index>& around, Index centre) const {
     std::vector<Triangle> fan;
     for (const Index s : around) {
@@ -245,8 +246,8 @@ class Unfolder : SidedTriangles {
     return fan;
   }
 
-  /// Returns whether the point is within the distance of a triangle's corner, or of its plane at a place
-  /// inside the triangle.
+  /// Returns whether the point is within the limit of a triangle's corner, or of a triangle's plane and above
+  /// the inside of the triangle.
   bool keeps_near(Index p, const std::vector<Triangle>& fan, double distance_limit) const {
     return std::any_of(fan.begin(), fan.end(), [&](const Triangle& t) {
       const Vector n = normal(t);

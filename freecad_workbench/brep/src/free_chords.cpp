@@ -111,8 +111,8 @@ class CutEdges {
  public:
   explicit CutEdges(double deflection) : reach_(2 * deflection) {}
 
-  /// Returns whether an earlier edge is so near that its chords and those of this edge may cross. The chords
-  /// of straight edges are the edges themselves.
+  /// Returns whether an earlier edge without a common end is so near that its chords and those of this edge
+  /// may cross. The chords of straight edges are the edges themselves.
   bool are_near(const TopoDS_Shape& edge) const {
     const bool straight = is_straight(edge);
     const Bnd_Box box = box_of(edge);

@@ -90,7 +90,7 @@ bool meet_amid(const TopoDS_Shape& a, const TopoDS_Shape& b) {
   return is_edge(a) && is_edge(b) && (runs_along(a, b, tolerance) || runs_along(b, a, tolerance));
 }
 
-/// The faces, with the parts that end on them.
+/// The faces of a shape, with their edges and vertices.
 class Faces {
  public:
   explicit Faces(const TopoDS_Shape& all) : faces_(subshapes(all, TopAbs_FACE)) {
@@ -128,7 +128,7 @@ class Faces {
     return least;
   }
 
-  /// Returns places along an edge: one between each two neighbouring points at which the edge meets faces.
+  /// Returns places along an edge: one in each piece between the points at which the edge meets faces.
   std::vector<gp_Pnt> places_between(const TopoDS_Edge& edge) const {
     double first = 0, last = 0;
     const Handle(Geom_Curve) curve = BRep_Tool::Curve(edge, first, last);
@@ -148,7 +148,7 @@ class Faces {
   }
 
  private:
-  /// Returns the faces sorted by the distances of their boxes.
+  /// Returns the distances of the faces' boxes from the box of a part, with the faces; nearest first.
   std::vector<std::pair<double, std::size_t>> by_distance_of_boxes(const TopoDS_Shape& part) const {
     const Bnd_Box box = box_of(part);
     std::vector<std::pair<double, std::size_t>> faces;
@@ -183,11 +183,11 @@ class Solids {
       }
   }
 
-  /// Returns whether a piece of a part lies inside one of the solids, neither outside nor on its faces.
+  /// Returns whether at least a piece of a part lies inside a solid and not just on its faces.
   bool hold_some_of(const TopoDS_Shape& part, const Faces& faces) const {
     return hold_some_of(samples_of(part)) ||
            (is_edge(part) &&
-            hold_some_of(faces.places_between(TopoDS::Edge(part))));  // a thin wall may be in between
+            hold_some_of(faces.places_between(TopoDS::Edge(part))));  // the samples may miss a thin solid
   }
 
  private:
@@ -207,7 +207,7 @@ class Solids {
   std::vector<Bnd_Box> boxes_;
 };
 
-/// A sorter of the parts of no face by their position: inside, outside or on faces.
+/// A sorter of the parts that belong to no face, by their position: inside solids, outside or on faces.
 class Sorter {
  public:
   Sorter(const std::string& file, Topology& topology)
@@ -311,7 +311,7 @@ class Sorter {
     }
   }
 
-  /// Records a piece's number: a piece that several parts or faces share may have another part's number.
+  /// Lists a piece whose number is not that of its part: several parts or faces may share the piece.
   void note_number(const Candidate& part, const TopoDS_Shape& piece) {
     const int number = topology_.number(piece);
     if (number == part.number) return;

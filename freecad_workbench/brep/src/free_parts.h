@@ -8,12 +8,12 @@
 
 namespace collarmesh::brep {
 
-/// Returns the edges that bound no face, and the vertices that end no edge.
+/// Returns the edges that belong to no face, and the vertices that belong to no face and no edge.
 std::vector<TopoDS_Shape> parts_of_no_face(const TopoDS_Shape& shape);
 
-/// Keeps the parts that lie inside the closed solids, in `topology.free_parts`. Cuts them where they meet
-/// faces or one another, and inserts vertices into the faces there; pieces have the number of their part.
-/// Notes list the other parts, and pieces outside. Precondition: the topology's solids share their faces.
+/// Puts the parts that lie inside closed solids into `topology.free_parts`. Cuts them where they meet faces
+/// or one another, and inserts vertices into the faces there; pieces have the number of their part. Notes
+/// list the other parts, and pieces outside. Precondition: the topology's solids share their faces.
 void keep_free_parts_inside(const std::vector<TopoDS_Shape>& parts, const std::string& file,
                             Topology& topology);
 

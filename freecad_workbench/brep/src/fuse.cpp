@@ -1,4 +1,4 @@
-// Makes solids that touch or overlap share faces, so that every point belongs to one of them.
+// Makes solids that touch or overlap share faces, so that no point is inside two of them.
 #include "fuse.h"
 
 #include <fmt/format.h>
@@ -67,7 +67,8 @@ std::vector<std::array<std::size_t, 2>> face_pairs(const Argument& a, const Argu
   return pairs;
 }
 
-/// Returns groups of two or more arguments connected by pairs that may meet, each in order.
+/// Returns the groups of two or more arguments that are connected by pairs of faces that may meet, each in
+/// ascending order.
 std::vector<Group> groups_of(const std::vector<Argument>& arguments) {
   std::vector<std::size_t> group(arguments.size());
   std::iota(group.begin(), group.end(), 0);
@@ -99,9 +100,9 @@ bool is_plane(const TopoDS_Shape& face) {
   return BRepAdaptor_Surface(TopoDS::Face(face), false).GetType() == GeomAbs_Plane;
 }
 
-/// Returns pairs of faces of two solids that have no vertex in common. Such faces may touch in a point inside
-/// both, which general fuse does not find. Leaves out pairs of planar faces: they touch in a single point
-/// only at an edge or a vertex, which general fuse does find.
+/// Returns pairs of faces whose boxes meet, of solids that have no vertex in common. Such faces may touch in
+/// a point inside both, which general fuse does not find. Leaves out pairs of planar faces: they touch in a
+/// single point only at an edge or a vertex, which general fuse does find.
 std::vector<std::array<TopoDS_Shape, 2>> pairs_apart(const std::vector<Argument>& solids) {
   std::map<std::array<std::size_t, 2>, Bnd_Box> tight;  // by solid and face
   const auto box = [&](std::size_t s, std::size_t f) -> const Bnd_Box& {
@@ -191,7 +192,8 @@ Fuse fuse_with_contacts(const std::vector<TopoDS_Shape>& shapes) {
 }
 
 /// Fuses the shapes that may touch. If parts of some solids are unsound, moves the worst solid from `shapes`
-/// to `left_out` and fuses again, because it may have spoilt the others. Null if that fails.
+/// to `left_out` and fuses again, because it may have spoilt the others. Null if a fuse fails or fewer than
+/// two shapes are left.
 Fuse sound_fuse(std::vector<TopoDS_Shape>& shapes, std::vector<TopoDS_Shape>& left_out) {
   constexpr int rounds = 3;  // from this round on all solids with unsound parts are left out
   for (int round = 1; shapes.size() > 1; ++round) {

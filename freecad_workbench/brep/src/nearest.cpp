@@ -32,16 +32,17 @@ using TreeBox = bg::model::box<TreePoint>;
 using Tree = bg::index::rtree<std::pair<TreeBox, std::size_t>, bg::index::quadratic<16>>;
 
 gp_Pnt to_gp(const Point& p) { return {p.x, p.y, p.z}; }
-/// Keeps the nearer of two results.
+/// Replaces `best` by `other` if that is nearer to p.
 void keep_nearer(std::optional<Point>& best, const std::optional<Point>& other, const Point& p) {
   if (other && (!best || squared_distance(*other, p) < squared_distance(*best, p))) best = other;
 }
 
-/// Limits of a descent to the nearest point. Lengths are relative to the extent of the coordinates.
+/// Limits of a descent to the point nearest to p. Lengths are relative to the distance of p from the origin
+/// plus that from the start.
 namespace descent {
 constexpr int steps = 50, halvings = 20;
 constexpr double rounding = 1e-15;
-constexpr double converged = 1e-11;  // smaller steps are lost in rounding
+constexpr double converged = 1e-11;  // a descent may end with a step up to this, as rounding hides its gain
 }  // namespace descent
 
 /// Returns the weights of a triangle's corners for its point nearest to p.
@@ -181,8 +182,8 @@ class EdgeCurve {
     return best;
   }
 
-  // A chord is at most half of `reach_` away from its part of the edge. This distance is estimated from a few
-  // points of the part, with a margin.
+  // `reach_` is this many times the largest distance found between a chord and its part of the edge: twice
+  // that distance, and a margin because only a few points of the part are measured.
   static constexpr double chords_apart = 3;
 
   BRepAdaptor_Curve curve_;
@@ -252,7 +253,7 @@ class FaceSurface {
     };
     const auto look_at_entry = boost::make_function_output_iterator(
         [&](const std::pair<TreeBox, std::size_t>& entry) { look_at(entry.second); });
-    constexpr unsigned first = 8;  // the first may contain a large triangle far from p
+    constexpr unsigned first = 8;  // the nearest box may be that of a large triangle far from p
     tree_.query(bg::index::nearest(TreePoint(p.x, p.y, p.z), first), look_at_entry);
     const double reach = std::sqrt(least);
     if (start && reach > 0)
@@ -268,7 +269,7 @@ class FaceSurface {
     if (!start) return std::nullopt;
     std::optional<Point> best = descend(start->uv, to_gp(p));
     if (best) return best;
-    constexpr double tolerance = 1e-12;  // relative to the parameters
+    constexpr double tolerance = 1e-12;  // absolute, in parameters
     const Extrema_ExtPS global(to_gp(p), surface_, tolerance, tolerance);
     if (global.IsDone())
       for (int i = 1; i <= global.NbExt(); ++i) keep_nearer(best, to_point(global.Point(i).Value()), p);
@@ -326,7 +327,7 @@ class FaceSurface {
     return next;
   }
 
-  static constexpr double flat = 1e-14;  // determinant of dependent tangents, relative
+  static constexpr double flat = 1e-14;  // relative to e * g: determinant of tangents that are parallel
 
   BRepAdaptor_Surface surface_;
   const Samples& samples_;

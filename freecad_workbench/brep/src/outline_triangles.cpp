@@ -33,7 +33,7 @@ std::map<Ends, int> uses_of(const std::vector<Ends>& chords) {
   return uses;
 }
 
-/// Marks the side of each face, starting at the infinite one.
+/// Marks which faces are inside the outline, starting at the infinite face, which is outside.
 void mark_sides(Triangulation& plane, const std::map<Ends, int>& uses) {
   std::vector<Triangulation::Face_handle> reached{plane.infinite_face()};
   reached.front()->info().seen = true;

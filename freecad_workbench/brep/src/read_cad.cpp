@@ -89,7 +89,8 @@ CadLabels labels_of(const STEPControl_Reader& reader, const TopoDS_Shape& shape)
   }
 }
 
-/// Mends the shape as far as OpenCASCADE can.
+/// Mends faces of spheres. A failure of OpenCASCADE ends this without an error, because the shape can be
+/// used.
 void mend(const STEPControl_Reader& reader, const TopoDS_Shape& shape) {
   try {
     mend_sphere_sides(reader, shape);

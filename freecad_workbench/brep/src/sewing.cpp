@@ -64,7 +64,7 @@ TopoDS_Shell shell_of(const TopoDS_Shape& face) {
   return shell;
 }
 
-/// Returns the shells of sewn faces. A face without neighbours, such as a sphere, has no shell yet.
+/// Returns the shells of sewn faces. A face without neighbours, such as a sphere, has none and gets one.
 std::vector<TopoDS_Shell> shells_of(const TopoDS_Shape& sewn) {
   std::vector<TopoDS_Shell> shells;
   for (const TopoDS_Shape& shell : subshapes(sewn, TopAbs_SHELL)) shells.push_back(TopoDS::Shell(shell));
@@ -97,13 +97,14 @@ void keep_open(const Sewn& sewn, const std::string& file, Topology& topology) {
   topology.solids.push_back(open);
 }
 
-/// Returns whether a shell is a closed surface with some faces missing, rather than a sheet.
+/// Returns whether a shell looks like a closed surface with some faces missing, rather than a sheet: fewer
+/// than half of its edges are open.
 bool nearly_closed(const TopoDS_Shape& shell) {
   return 2 * open_edges(shell).size() < subshapes(shell, TopAbs_EDGE).size();
 }
 
-/// Makes solids of closed shells, and open solids of nearly closed ones. Returns the number of the other
-/// faces.
+/// Makes solids of closed shells, and open solids of nearly closed ones. Returns how many faces the other
+/// shells have.
 std::size_t make_solids(const std::vector<TopoDS_Shell>& shells, Topology& topology) {
   std::size_t left_out = 0;
   for (const TopoDS_Shell& shell : shells) {
@@ -122,7 +123,7 @@ std::size_t make_solids(const std::vector<TopoDS_Shell>& shells, Topology& topol
   return left_out;
 }
 
-/// Returns a closed solid for an open one, if sewing closes it.
+/// Returns the solid that sewing makes of an open one; the open one if sewing does not close it.
 TopoDS_Shape closed(const Topology::Solid& open, const std::string& file, Topology& topology,
                     std::vector<Sewn>& sewings) {
   const Sewn result = sewn(open.shape);

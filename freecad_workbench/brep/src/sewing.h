@@ -6,8 +6,9 @@
 
 namespace collarmesh::brep {
 
-/// Sews faces of no solid within 1e-5, 1e-4 and 1e-3 of the diagonal, until they enclose something. Closed
-/// shells then become solids. If nothing is enclosed, all faces become one open solid.
+/// Sews the faces of a shape without solids within 1e-5, then 1e-4 and 1e-3 of the diagonal, until no edge is
+/// open; if some stay open, takes the smallest gap that leaves the fewest. Closed shells become solids,
+/// nearly closed ones open solids. If no shell is closed, all faces become one open solid.
 void sew_faces(const std::string& file, Topology& topology);
 
 /// Sews the faces of open solids in the same way. Solids that stay open are kept, and described in

@@ -76,7 +76,8 @@ bool is_sphere_between_poles(const TopoDS_Face& face) {
   return poles == 2 && BRepAdaptor_Surface(face, false).GetType() == GeomAbs_Sphere;
 }
 
-/// Returns the same sphere with its seam in the middle of the given part of the face's parameters.
+/// Returns the sphere of a face, turned about its axis so that the seam is midway between two longitudes of
+/// the face (radians).
 Handle(Geom_SphericalSurface) with_seam_amid(const TopoDS_Face& face, double from, double to) {
   gp_Sphere sphere = BRepAdaptor_Surface(face, false).Sphere();
   sphere.Rotate(gp_Ax1(sphere.Location(), sphere.Position().Direction()), 0.5 * (from + to));
@@ -134,7 +135,7 @@ void take_over(TopoDS_Face& face, const TopoDS_Face& by) {
   if (by.Orientation() == TopAbs_REVERSED) face.Reverse();
 }
 
-/// Adds the faces to the shell again, in this order and with these orientations.
+/// Replaces a shell's faces `before` by `faces`, in this order and with these orientations.
 void refill(const TopoDS_Shape& shell, const std::vector<TopoDS_Face>& before,
             const std::vector<TopoDS_Face>& faces) {
   BRep_Builder builder;
@@ -148,7 +149,8 @@ void refill(const TopoDS_Shape& shell, const std::vector<TopoDS_Face>& before,
   bare.Closed(closed);
 }
 
-/// Returns the spherical faces through both poles that, unlike most of them, are turned against the file.
+/// Returns the spherical faces with both poles that, unlike most faces of the shell, are oriented against the
+/// file.
 std::vector<std::size_t> turned_spheres(const TopoDS_Shape& shell, const Senses& senses) {
   const std::vector<TopoDS_Face> faces = faces_in_shell(shell);
   std::vector<std::size_t> turned, kept;

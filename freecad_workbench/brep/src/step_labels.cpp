@@ -78,8 +78,8 @@ class StepNames {
       if (product.own > 0) ++products_of_solids_;
   }
 
-  /// Returns the name of the innermost product, followed by the name of the solid if the product has several
-  /// solids.
+  /// Returns the name of the innermost product. If it has several solids, the solid's name follows; that name
+  /// stands alone if no other product has solids.
   std::string find(const TopoDS_Shape& solid) const {
     const auto found = own_.find(geometry_of(solid));
     std::string own = found == own_.end() ? std::string() : found->second;

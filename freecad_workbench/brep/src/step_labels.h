@@ -7,8 +7,8 @@ class TopoDS_Shape;
 
 namespace collarmesh::brep {
 
-/// Reads names of products and solids and colours of faces and solids. Their numbers are those of `shape`,
-/// which the reader has made of all roots. Cost: linear in the entities of the file.
+/// Reads the names of products and solids, and the colours of faces and solids. Their numbers are those of
+/// `shape`, which the reader has made of all roots. Cost: linear in the entities of the file.
 CadLabels step_labels(const STEPControl_Reader& reader, const TopoDS_Shape& shape);
 
 }  // namespace collarmesh::brep

@@ -88,9 +88,9 @@ class Tessellator {
 
  private:
   static constexpr double straight_ = 1e-13;  // rounding, relative to the diagonal
-  static constexpr double seam_gap_ = 1e-3;   // largest relative gap between the ends of edges in the
-                                              // parameter plane
-  static constexpr double flat_ = 1e-3;       // height of a flat triangle, relative to the deflection
+  static constexpr double seam_gap_ = 1e-3;   // largest distance in space, relative to the diagonal,
+                                              // between two ends of edges that are one node
+  static constexpr double flat_ = 1e-3;       // largest height of a flat triangle, relative to the deflection
 
   void set_fineness(const TessellationOptions& options, bool finer) {
     const double by = finer ? options.finer : 1;
@@ -324,7 +324,7 @@ class Tessellator {
   }
 
   /// Returns the parameters of an edge's points on a face: by its curve in the parameter plane, or by
-  /// projection if that curve is off.
+  /// projection if that curve is missing or too far from the points.
   std::vector<std::array<double, 2>> parameters_on(const TopoDS_Face& face, const TopoDS_Edge& edge,
                                                    const BRepAdaptor_Surface& surface) const {
     const std::size_t index = slot(edges_.FindIndex(edge));
@@ -413,9 +413,9 @@ class Tessellator {
     return area_of({t[0], t[1], p}) + area_of({t[1], t[2], p}) + area_of({t[2], t[0], p});
   }
 
-  /// Adds a middle point to an edge of a single chord if its curve deviates from the chord by less than the
-  /// deflection (also because its vertices lie off it), so that the complex knows that it is not straight.
-  /// Divides the triangles there into two.
+  /// Adds the curve's middle point to each edge that has a single chord but is not straight (or has vertices
+  /// off its curve), so that the complex does not take the edge as straight. Divides the triangles at the
+  /// chord into two.
   void bend_single_chords() {
     std::map<std::array<Index, 2>, Index> middle_of;
     for (int e = 1; e <= edges_.Extent(); ++e) {

@@ -16,7 +16,7 @@ struct Samples {
   TopoDS_Shape shape;
   std::vector<Point> points;
   std::vector<std::array<double, 2>> parameters;  ///< for an edge only the first of each pair counts
-  std::vector<std::array<Index, 3>> triangles;    ///< for a face: indices of points, of which a seam has two
+  std::vector<std::array<Index, 3>> triangles;    ///< for a face: indices of points; seams have theirs twice
 };
 
 struct Tessellation {

@@ -29,8 +29,8 @@ struct Topology {
   struct FreePart {
     TopoDS_Shape shape;
     int number = 0;
-    double clearance = 0;  ///< distance from the faces that it does not end on; for curved faces, the
-                           ///< distance of its middle
+    double clearance = 0;  ///< distance from the faces that it does not end on, or from its middle to
+                           ///< curved faces, if that is less
   };
 
   std::vector<Solid> solids;                 ///< parts of one solid have the same number
@@ -39,7 +39,7 @@ struct Topology {
                                              ///< edges alone
   TopoDS_Shape all;                          ///< the shape to tessellate
   TopTools_DataMapOfShapeInteger numbers;    ///< numbers of solids, faces, edges and vertices
-  std::vector<std::pair<TopoDS_Shape, int>> kept_numbers;  ///< numbers of parts that no step changes
+  std::vector<std::pair<TopoDS_Shape, int>> kept_numbers;  ///< numbers of free parts, for steps without them
   std::vector<std::pair<Tag, Tag>> replaced_faces;         ///< pairs: the number that is gone, and the number
                                                            ///< that replaces it
   std::vector<std::string> notes;
@@ -76,8 +76,8 @@ std::vector<TopoDS_Shape> boundary_of(const TopoDS_Shape& solid);
 using PartsOf = std::function<TopTools_ListOfShape(const TopoDS_Shape&)>;
 
 /// Numbers the parts that the sub-shapes of `before` became in `after`. A part that several sub-shapes became
-/// gets the smallest of their numbers; new parts get the next free numbers. Records the numbers of faces that
-/// are gone.
+/// gets the smallest of their numbers; new parts get the next free numbers. Records in `replaced_faces` the
+/// numbers of faces that are gone.
 void carry_numbers(const TopoDS_Shape& before, const TopoDS_Shape& after, const PartsOf& parts_of,
                    Topology& topology);
 
@@ -99,7 +99,7 @@ std::string text(const Point& p);
 /// Throws a PlcError with one fault.
 [[noreturn]] void fail(PlcFault::Kind kind, const std::string& message, const Point& where = {});
 
-/// Returns OpenCASCADE's message of a failure, whose class is no std::exception.
+/// Returns the message of a failure of OpenCASCADE, or the name of its class if it has none.
 std::string text(const Standard_Failure& failure);
 
 }  // namespace collarmesh::brep

@@ -54,8 +54,8 @@ def remesh(mesh_object):
 
 
 def refine_by_result(mesh_object, elements=None, error=None):
-    """Adapt the mesh to the error of the stresses in its analysis' result, finer and coarser, and wait; returns the
-    program's report.
+    """Adapt the mesh to the error of the stresses in its analysis' result, finer where the error is large and coarser
+    where it is small, and wait; returns the program's report.
 
     `elements`: the number of elements to aim for; or `error`: the error of the next result, relative to the energy norm
     (0 to 1). Edges become 0.25 to 2 times as long, so large changes take several steps, each with a result of its own.

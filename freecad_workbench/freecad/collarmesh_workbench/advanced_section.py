@@ -109,11 +109,11 @@ class AdvancedSection(QtGui.QWidget):
                 setattr(self.object, name, value)
 
     def tick(self, name):
-        """Returns the check box of a property."""
+        """Ticks the check box of a property."""
         self.findChild(QtGui.QCheckBox, "collarmesh_" + name).setChecked(True)
 
     def apply_to(self, settings):
-        """Returns Settings with the values of the fields, as far as they can be read."""
+        """Copies the values of the fields to Settings, as far as they can be read."""
         for _, name, field, *_ in mesh_properties.PROPERTIES:
             if name in self._readers:
                 try:

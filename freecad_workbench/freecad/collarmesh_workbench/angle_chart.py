@@ -1,4 +1,5 @@
-"""A chart of the dihedral angles of all tetrahedra, or of the angles of all triangles, with the worst one marked."""
+"""A chart of the dihedral angles of all tetrahedra, or of the angles of all triangles, with a mark at the smallest
+one."""
 
 from PySide import QtCore, QtGui
 
@@ -9,8 +10,8 @@ STRAIGHT = 180  # degrees
 
 
 class AngleChart(QtGui.QWidget):
-    """Bars by angle: of the smallest and of the largest angles of all elements. Emits `worst_clicked` when
-    the mark of the worst tetrahedron is clicked."""
+    """Two series of bars: how many elements have their smallest angle, and their largest, in each range of angles.
+    Emits `worst_clicked` when the mark of the worst tetrahedron is clicked."""
 
     worst_clicked = QtCore.Signal()
 
@@ -54,7 +55,7 @@ class AngleChart(QtGui.QWidget):
         return frame.left() + frame.width() * angle / STRAIGHT
 
     def _mark(self):
-        """Returns the triangle that marks the worst tetrahedron, by its smallest angle."""
+        """Returns the triangle that marks the smallest angle, which is that of the worst element."""
         x, bottom = self._x(self.extremes[0]), self._frame().bottom()
         corners = ((x, bottom - 1), (x - 5, bottom - 12), (x + 5, bottom - 12))
         return QtGui.QPolygonF([QtCore.QPointF(*corner) for corner in corners])

@@ -83,7 +83,7 @@ def on(surface, part, settings):
 
 
 def _on_solid(surface, shape, number):
-    """Returns which corners are on the solid."""
+    """Returns which corners are on faces of the solid."""
     faces = [i for i, face in enumerate(shape.Faces, 1) if any(face.isSame(each)
                                                                for each in shape.Solids[number - 1].Faces)]
     return numpy.isin(surface.faces, faces)
@@ -134,7 +134,8 @@ def _to_subshape(surface, shape, kind, number):
 
 
 def _to_points(places, points):
-    """Returns for each place the distance from the nearest point. Works in blocks to bound memory."""
+    """Returns for each place the distance from the nearest one of at most POINTS of the points. Works in blocks to
+    bound memory."""
     points = points[:: max(1, math.ceil(len(points) / POINTS))]
     if not len(points):
         return numpy.full(len(places), numpy.inf)
@@ -146,8 +147,8 @@ def _to_points(places, points):
 
 
 def _of_curvature(surface, shape, count):
-    """Returns the size for `count` elements on a full circle, for the smallest radius of curvature near some
-    places of the face."""
+    """Returns the size for `count` elements on a full circle. Its radius is the smallest radius of curvature at the
+    nearest one of some places on the face."""
     sizes = numpy.full(len(surface.places), numpy.inf)
     for number, face in enumerate(shape.Faces, 1):
         if type(face.Surface).__name__ == "Plane":

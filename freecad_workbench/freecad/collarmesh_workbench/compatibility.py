@@ -79,8 +79,8 @@ def is_plain_refinement(obj):
 
 
 def size_by_place(obj):
-    """Converts a refinement by place of FreeCAD 1.1 to one of ours: returns (kind, size, size far away,
-    distance over which the size grows to the latter, properties); None for other objects."""
+    """Converts a refinement by place of FreeCAD 1.1 to one of ours: returns (kind, size, size far away, distance over
+    which the size grows to that, properties); None for other objects."""
     kind = type_of(obj)
     if kind == "Fem::MeshDistance":
         between = obj.DistanceMaximum.Value - obj.DistanceMinimum.Value
@@ -134,9 +134,9 @@ def transaction(document, name):
 
 
 def write_constraints_on(*finders):
-    """Changes FreeCAD's writers for solvers, which look for the nodes of constraints by place. They use the
-    nodes of the elements that one of the finders returns for (mesh, object, name of a face), unless all return
-    None."""
+    """Changes FreeCAD's writers for solvers, which look for the nodes of constraints by place. They then use the nodes
+    of the elements that the first finder with a result returns for (mesh, object, name of a face), and look by place
+    only if all return None."""
     by_place, loads_by_place = meshtools.get_femnodes_by_refshape, meshtools.get_force_obj_face_nodeload_table
 
     def elements_of(*reference):

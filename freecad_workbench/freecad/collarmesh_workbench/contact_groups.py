@@ -50,7 +50,7 @@ class _Owners:
         self._nodes = {}
 
     def own(self, kind, number, elements):
-        """Returns the elements that belong to the solids of a face."""
+        """Returns those of the elements whose nodes all belong to one solid of a face or an edge."""
         nodes = [self._nodes_of(solid) for solid in self.here.solids(kind, number)]
         return {each for each in elements if any(set(self.fem_mesh.getElementNodes(each)) <= those for those in nodes)}
 

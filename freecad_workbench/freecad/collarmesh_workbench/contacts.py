@@ -29,8 +29,8 @@ def of(shape):
 
 
 def in_mesh_numbers(settings, shape):
-    """Returns Settings with the mesh's numbers of faces and edges. A size for a face applies to all faces
-    that have parts of it, and so do layers. If no solids touch, none are kept apart."""
+    """Returns Settings with the mesh's numbers of faces and edges. A size for a face applies to all faces of the mesh
+    that are parts of it, and so do layers. If no solids touch, none are kept apart."""
     here = of(shape)
     sizes = {}
     for field, kind in (("face_sizes", "Face"), ("edge_sizes", "Edge")):

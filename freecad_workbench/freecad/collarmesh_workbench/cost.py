@@ -7,7 +7,7 @@ from .size_presets import count_text, duration_text
 from .translations import translate
 
 MANY = 5_000_000  # number of elements
-BYTES = {1: 1000, 2: 2000}  # bytes of memory per element, by order: first in the mesher, then in FreeCAD
+BYTES = {1: 1000, 2: 2000}  # bytes of memory per element, by order; the mesher needs them, and after it FreeCAD
 GIGABYTE = 1e9
 LOADING = {1: 5e-6, 2: 12e-6}  # seconds per element that FreeCAD takes to read it, by order
 
@@ -26,8 +26,8 @@ def elements_by_extent(part, size, dimension=3):
 
 
 def estimates(part, sizes, dimension):
-    """Returns {size: (elements, None)} for meshes that the program does not predict. Ignores curvature and
-    small faces."""
+    """Returns {size: (elements, None)} for meshes of triangles or lines, which the program does not predict. Ignores
+    curvature and small faces."""
     return {} if part is None else {size: (elements_by_extent(part, size, dimension), None)
                                     for size in sizes if size > 0}
 

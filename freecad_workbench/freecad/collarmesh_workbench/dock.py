@@ -7,8 +7,7 @@ from PySide import QtCore, QtGui
 
 
 def widen(form, width):
-    """Makes room for a panel's whole width (pixels) when it is in its dock, which otherwise shows only what
-    fits."""
+    """Widens the dock to the whole width of a panel (pixels) as soon as the panel is in it."""
     QtCore.QTimer.singleShot(0, lambda: _widen(form, width))
 
 

@@ -1,5 +1,5 @@
-"""The elements of a mesh: tetrahedra, with prisms in boundary layers, if it has any, else triangles, else lines.
-Works without the GUI."""
+"""The elements of a mesh, those of its highest dimension: tetrahedra with the prisms of boundary layers, triangles, or
+lines. Works without the GUI."""
 
 
 def dimension(fem_mesh):
@@ -14,7 +14,7 @@ def numbers(fem_mesh):
 
 
 def is_there(fem_mesh):
-    """Returns whether the mesh is the result of a run. Edges alone do not tell: every mesh has them."""
+    """Returns whether the mesh has nodes and elements."""
     return fem_mesh.NodeCount > 0 and dimension(fem_mesh) > 0
 
 

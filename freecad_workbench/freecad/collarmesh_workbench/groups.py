@@ -1,8 +1,8 @@
-"""Groups of elements with the names of FEM's objects, made from those of faces, edges and solids.
-FreeCAD finds the elements of a material by the places of their nodes, which loses some where solids touch. It
-prefers a volume group called `<material>_...`. A document observer keeps these groups up to date: it makes
-them anew when a material's references or the members of the analysis change. Constraints need no groups,
-because their nodes lie on the exact faces."""
+"""Groups of elements with the names of FEM's objects, made from the groups of faces, edges and solids. FreeCAD finds
+the elements of a material by the places of their nodes, which loses some elements where solids touch. It prefers a
+volume group called `<material>_...`. A document observer keeps these groups up to date: it makes them anew when a
+material's references or the members of the analysis change. Constraints need no groups, because their nodes lie on the
+exact faces."""
 
 import re
 
@@ -133,7 +133,7 @@ def add_groups(mesh_object, fem_mesh):
 
 
 def names_of_owners(mesh_object):
-    """Returns the names of all objects for which groups are made, including former members."""
+    """Returns the names of all objects for which groups are made, including former members of the analysis."""
     document = mesh_object.Document
     return {name for each in document.Objects for name in (each.Name, each.Label) if hasattr(each, "References")}
 

@@ -67,7 +67,7 @@ def _groups_of_lines():
 
 
 def _groups():
-    """Returns the certificate's names, grouped by what they guarantee."""
+    """Returns [(text, the certificate's names of the guarantees)] for a mesh of tetrahedra."""
     return [
         (translate("collarmesh", "The mesh fills the shape: every face, edge and corner is kept"),
          ("conforming", "watertight", "curve_cover", "curve_distance", "patch_area", "patch_border", "patch_distance",

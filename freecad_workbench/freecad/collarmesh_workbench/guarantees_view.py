@@ -9,7 +9,7 @@ from .translations import translate
 
 
 class GuaranteesView(QtGui.QWidget):
-    """A single line if all guarantees hold; it unfolds to the list."""
+    """A line that unfolds to the list of guarantees. It is unfolded at first if one is missed."""
 
     def __init__(self):
         super().__init__()

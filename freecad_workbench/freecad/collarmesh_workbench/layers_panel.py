@@ -99,7 +99,7 @@ class LayersPanel(EditPanel):
         self._show_note()
 
     def _show_note(self):
-        """Shows which height follows from the others, if it is known."""
+        """Shows the height that follows from the other fields, if it is known."""
         relative = relative_thickness(self.object.Growth, self.object.Count)
         first, thickness = self.object.FirstHeight.Value, self.object.Thickness.Value
         self.first.widget.setEnabled(thickness == 0)

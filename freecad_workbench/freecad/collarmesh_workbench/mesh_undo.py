@@ -49,7 +49,7 @@ def replace(obj, fem_mesh):
 
 
 def same(first, second):
-    """Returns whether two meshes are the same, regardless of groups."""
+    """Returns whether two meshes are the same, by their counts and some of their nodes, regardless of groups."""
     if any(
         getattr(first, each) != getattr(second, each)
         for each in ("NodeCount", "EdgeCount", "FaceCount", "VolumeCount")

@@ -43,8 +43,8 @@ def run_of(obj):
 
 
 def outcome_of(obj):
-    """Returns the outcome of the object's last run since its document was opened, else None. The object's
-    mesh may be another one, for example after undo."""
+    """Returns the outcome of the object's last run since its document was opened. None without such a run, or if the
+    object now has another mesh, for example after undo."""
     outcome = _outcomes.get(key_of(obj))
     if outcome is None or outcome.report is None:
         return outcome

@@ -6,7 +6,7 @@ import numpy
 import Part
 
 FLAT = 0.1  # degrees: triangles whose normals differ by less are in one plane
-COARSE = 1  # degrees; doubled until there are not too many faces
+COARSE = 1  # degrees, in place of FLAT if there would be more than MOST faces; doubled until there are fewer
 MOST = 2000
 
 

@@ -100,9 +100,9 @@ class Settings(dataclasses.make_dataclass("OfProgram", [_field(*item) for item i
 
 
 def find_program(preferred=""):
-    """Returns the path of the program: the first that exists of `preferred`, the environment variable
-    COLLARMESH_PROGRAM, the program inside the add-on, the PATH, the folder that the add-on is installed in,
-    or its sources. Raises MesherError if none exists."""
+    """Returns the path of the program: `preferred` or the environment variable COLLARMESH_PROGRAM, if one is given;
+    else the first that exists of the program inside the add-on, on the PATH, built from the sources around the add-on,
+    or installed with it. Raises MesherError if there is none."""
     for candidate in (preferred, os.environ.get("COLLARMESH_PROGRAM", "")):
         if candidate:
             if shutil.which(candidate):
@@ -192,8 +192,8 @@ class Job:
         return None
 
     def _for_people(self, text):
-        """Removes the folder's path from a message, because the folder no longer exists when the message is
-        read."""
+        """Rewrites a message with the names of faces, and without the folder's path, because the folder no longer
+        exists when the message is read."""
         text = subshape_words.in_names(text, self.names) if self.names else text
         text = text.replace(self.shape, "the shape").replace(self.folder.name + os.sep, "")
         return re.sub(r"(^|^collarmesh: |\. )the shape\b", r"\1The shape", text)

@@ -2,7 +2,7 @@
 without FreeCAD.
 
 Zienkiewicz and Zhu, A simple error estimator and adaptive procedure for practical engineering analysis, 1987. The
-Python package collarmesh has the same for fields on nodes; the add-on uses the program alone."""
+Python package collarmesh does the same for fields on nodes; the add-on does not need that package."""
 
 import dataclasses
 
@@ -134,7 +134,8 @@ class Sizes:
         return numpy.clip((goal / self._known) ** (1 / self._power), FINEST, COARSEST)
 
     def _goal(self, is_too_fine):
-        """Returns the error of one tetrahedron at which `is_too_fine(factors)` changes from true to false."""
+        """Returns the factors for the error of one tetrahedron at which `is_too_fine(factors)` changes from true to
+        false."""
         low = self._known.min() * FINEST**self._power
         high = self._known.max() * COARSEST**self._power
         for _ in range(STEPS):

@@ -143,8 +143,8 @@ def _moduli(card):
 
 
 def start(obj, made, factors):
-    """Returns a Job that is ready to run. `factors`: ratios of edge lengths, from the sizes of the Plan `made`. Raises
-    MesherError."""
+    """Returns a Job that is ready to run. `factors`: ratios of the next edge lengths to the present ones, from the
+    sizes of the Plan `made`. Raises MesherError."""
     lengths = made.sizes.at_points(factors)
     is_corner = ~numpy.isnan(lengths)
     settings = dataclasses.replace(mesh_properties.settings_of(obj), order=made.solution.order)

@@ -13,13 +13,13 @@ from .translations import doc, translate
 
 GROWTH = 0.3
 DEFAULT_SHARE = 0.1  # radius of a new sphere, relative to the part's diagonal
-TURNED = 1e-9  # rad
+TURNED = 1e-9  # rad; a box turned by less is parallel to the axes
 
 
 class Size(compatibility.WithProperties):
     """The common part of all size objects: the size inside, and its growth outside."""
 
-    lengths = ()  # lengths of the body: name, share for a new object, text
+    lengths = ()  # lengths of the body: name, first value relative to DEFAULT_SHARE of the diagonal, text
 
     def add_properties(self, obj):
         have = obj.PropertiesList

@@ -51,7 +51,8 @@ class MeshTaskPanel:
             self._show_outcome(meshing_process.outcome_of(obj))
         out_of_date = up_to_date.is_out_of_date(obj)
         self.result.show_out_of_date(out_of_date)
-        self._predict(None if elements.is_there(obj.FemMesh) and not out_of_date else 0)  # view only
+        # Whoever opens an up-to-date mesh may only want to see it, so run no prediction then.
+        self._predict(None if elements.is_there(obj.FemMesh) and not out_of_date else 0)
         self.form.destroyed.connect(self.dismiss)
         self.changes = QtCore.QTimer(self.form, singleShot=True, interval=MOMENT)
         self.changes.timeout.connect(self._ask_anew)

@@ -29,8 +29,8 @@ class TimeLeft:
         self._least = math.inf  # smallest estimate shown
 
     def seconds(self, passed, fraction):
-        """Returns the remaining seconds when `passed` seconds have passed. None: unknown; infinite: longer
-        than estimated before."""
+        """Returns the remaining seconds when `passed` seconds have passed. None: unknown; infinite: the estimated time
+        is over, or more than GROWTH times the smallest estimate that was shown is left."""
         share = share_of_time(fraction)
         left = self._by_run(passed, fraction, share) if self._predicted is None else self._by_prediction(passed, share)
         if left is None or left > GROWTH * self._least:

@@ -12,7 +12,7 @@ from .program import Settings
 from .translations import doc
 
 SHAPE, SETTINGS = "MeshedShape", "MeshedSettings"
-MARKS = 8  # number of values that identify a shape
+MARKS = 8  # number of weighted sums that identify a shape
 SAME_PLACE = 1e-9  # relative to the largest coordinate; FreeCAD's files keep 16 digits
 DIGITS = 10  # digits of a setting that are compared
 HIDDEN = 4 | 16  # for addProperty: Prop_Hidden, and Prop_NoRecompute because it changes no mesh
@@ -61,8 +61,8 @@ def sample(shape):
 
 
 def marks(points, *numbers):
-    """Returns sums of all coordinates with weights that depend on their positions. The last number is the
-    largest coordinate, which determines how exact the sums are."""
+    """Returns sums of all coordinates and numbers, with weights that depend on their positions in the arrays; then the
+    largest coordinate and the number of points, which determine how exact the sums are."""
     sums = numpy.zeros(MARKS)
     frequencies = numpy.sqrt(numpy.arange(2, 2 + MARKS))
     for values in (points, *numbers):

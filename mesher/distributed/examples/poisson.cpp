@@ -1,7 +1,7 @@
 // Solves a problem on a part, all in memory: mpirun -n 2 poisson part.off [SIZE [LEVELS]]
 //
 // The equation -div grad u = f is solved with linear elements on the coarse mesh and after each level of
-// refinement. The exact solution is known, and u is given on all patches; each level divides the error by
+// refinement. The exact solution is known and gives u on all patches. Each level divides the error by about
 // four.
 #include <collarmesh/distributed.h>
 #include <collarmesh/io/soup_io.h>
@@ -106,7 +106,8 @@ class Poisson {
     return std::fabs(collarmesh::six_volume(a, b, c, d)) / 6;
   }
 
-  /// Visits the values at the four points of a quadrature rule that is exact for quadratic polynomials.
+  /// Visits the four points of a quadrature rule that is exact for quadratic polynomials, each with the
+  /// values of the linear shape functions there and the weight.
   template <class Visit>
   static void quadrature(const Tet& tet, const Visit& visit) {
     constexpr double near = 0.5854101966249685, far = 0.1381966011250105;
@@ -149,7 +150,7 @@ class Poisson {
     PetscCallAbort(PETSC_COMM_WORLD, DMRestoreLocalVector(dm_, &local));
   }
 
-  /// Constrains the unknowns on patches (label `patch`) to the given values.
+  /// Sets the unknowns on patches (label `patch`) to the exact solution.
   void constrain(Mat matrix, Vec load, Vec solution) const {
     PetscSection global = nullptr;
     PetscCallAbort(PETSC_COMM_WORLD, DMGetGlobalSection(dm_, &global));

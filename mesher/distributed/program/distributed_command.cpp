@@ -46,7 +46,7 @@ class Session {
   Session& operator=(const Session&) = delete;
 };
 
-/// Ends all ranks because they no longer do the same; one of them prints the reason.
+/// Ends all ranks because they can no longer act together; one of them prints the reason.
 [[noreturn]] void end_all(process::Process& process, process::ExitCode code, const std::string& message) {
   const Ranks ranks(MPI_COMM_WORLD);
   // If several ranks fail at once, the first one reports and ends the others before they do.
@@ -67,8 +67,8 @@ class Session {
                   failure.what()));
 }
 
-/// Does work that is not collective and may end the program. If the program ends on one rank, it ends on all,
-/// and the first such rank reports the reason.
+/// Does work on each rank that is not collective and may throw Stopped. If it does on some ranks, all ranks
+/// throw the Stopped of the first of these.
 void together(const std::function<void()>& work) {
   std::exception_ptr thrown;
   std::optional<process::Stopped> stopped;

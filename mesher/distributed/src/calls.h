@@ -33,13 +33,13 @@ class PetscMessages {
   PetscMessages& operator=(const PetscMessages&) = delete;
 };
 
-/// Throws PetscOutOfMemory, or another PetscFailure, with PETSc's message.
+/// Throws PetscOutOfMemory if memory ran out, else PetscFailure; both with PETSc's message.
 [[noreturn]] void fail(PetscErrorCode code);
 inline void call(PetscErrorCode code) {
   if (code != 0) fail(code);
 }
 
-/// Does work of each rank that is not collective. If it throws on some ranks, all ranks throw the exception
+/// Does work on each rank that is not collective. If it throws on some ranks, all ranks throw the exception
 /// of the first of them, with its message: of the same class if that is one of collarmesh/error.h or
 /// std::bad_alloc. Waiting for other ranks takes no processor time.
 void agree(MPI_Comm communicator, const std::function<void()>& work);

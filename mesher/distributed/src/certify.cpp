@@ -52,7 +52,7 @@ class Fingerprint {
   std::array<std::uint64_t, 2> sums_{};
 };
 
-/// Returns the input of the checks without a mesh: the complex, and the allowed distances of a mesh from
+/// Returns the input of the checks with an empty mesh: the complex, and the allowed distances of a mesh from
 /// it.
 checks::MeshToCheck mesh_to_check_of(const Shape& shape, const TetMesh& nothing) {
   CheckOptions options;
@@ -60,7 +60,7 @@ checks::MeshToCheck mesh_to_check_of(const Shape& shape, const TetMesh& nothing)
   return checks::make_mesh_to_check(nothing, shape.plc, options);
 }
 
-/// The expected measures of the complex's features, and the allowed differences.
+/// The measures of the complex's features, and by how much those of the mesh may differ.
 struct Expected {
   explicit Expected(const Shape& shape)
       : to_check(mesh_to_check_of(shape, nothing)), sizes(measures_of(shape.plc)) {
@@ -334,7 +334,7 @@ class Certification {
     }
   }
 
-  /// Checks that every vertex inside a curve has two edges on it.
+  /// Checks that two edges of the curve meet at every vertex inside a curve.
   void check_chains() {
     std::vector<PetscInt> edges_of(mesh_->vertices, 0);
     for (std::size_t e = 0; e < mesh_->edges.size(); ++e) {
@@ -404,7 +404,7 @@ class Certification {
                 expected_->length_room[k]);
   }
 
-  /// Collects the findings of all ranks on all ranks.
+  /// Gives every rank the findings of all ranks.
   void gather() {
     std::string own;
     for (const auto& finding : found_.findings) own += finding.guarantee + '\t' + finding.message + '\n';

@@ -18,8 +18,8 @@ struct Stratum {
   PetscInt first = 0, end = 0;
 };
 
-/// Visits the vertices, and those edges that have coordinates, with their coordinates. Returns the number of
-/// the edges.
+/// Visits the vertices, and those edges that have coordinates, with their coordinates. Returns how many edges
+/// it visited.
 template <class Visit>
 std::size_t for_each_place(DM dm, PetscScalar* values, const Visit& visit) {
   PetscSection section = nullptr;

@@ -14,7 +14,7 @@ namespace collarmesh::distributed {
 
 using Corners = std::array<Point, 4>;
 
-/// The label `feature`: see ParallelMesh.
+/// The name of the label `feature`; ParallelMesh describes its values.
 inline constexpr const char* feature_label = "feature";
 inline PetscInt encoded(const TetMesh::VertexFeature& feature) {
   // All vertices of the complex share one value: their places tell them apart.
@@ -33,8 +33,8 @@ std::vector<PetscInt> label_values(DM dm, const char* name, PetscInt first, std:
 /// oriented if the DMPlex has them so. Faces are those on patches, edges those on curves; other ranks may
 /// have them, too. Leaves out what the DMPlex does not have: regions, creases and marks of thin tets.
 struct LocalMesh : TetMesh {
-  /// Reads a mesh of an order. If the DMPlex has no coordinates of mid-edge nodes, puts these at the middles
-  /// of their edges.
+  /// Reads the mesh as one of first or second order. If the DMPlex has no coordinates of mid-edge nodes, puts
+  /// these at the middles of their edges.
   LocalMesh(DM dm, int order);
 
   Corners corners(std::size_t tet) const {

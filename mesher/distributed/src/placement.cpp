@@ -34,16 +34,16 @@ constexpr double least_score = 0.2;
 constexpr double flat_score = -100;
 // The unit to which penalties are rounded. Doubles add its multiples without rounding.
 constexpr double unit_of_penalty = 0x1p-16;
-// The maximum number of sweeps that make room, and the steps that a vertex tries, relative to its shortest
-// edge.
+// The maximum number of sweeps that make room, and the lengths of steps that a vertex tries, relative to its
+// shortest edge.
 constexpr unsigned most_sweeps = 60;
 constexpr std::array<double, 3> steps{0.3, 0.1, 0.03};
 constexpr std::size_t places = 2 + 6 * steps.size();  // places that a vertex tries, including its own
-// Each sweep uses other directions. A vertex that found no better place is tried this many times, unless
-// something around it changes.
+// A vertex that found no better place is tried in this many sweeps, because each sweep uses other directions,
+// and again once something around it changes.
 constexpr std::uint8_t tries = 4;
-// A displacement off a plane or a straight curve counts as none if it is shorter than this, relative to the
-// shortest edge.
+// A displacement off a plane or a straight curve counts as none if it is shorter than this times the shortest
+// edge.
 constexpr double no_way = 1e-6;
 
 std::uint64_t mixed(std::uint64_t h) {  // the finalizer of MurmurHash3
@@ -54,7 +54,7 @@ std::uint64_t mixed(std::uint64_t h) {  // the finalizer of MurmurHash3
   return h ^ (h >> 33U);
 }
 
-/// Returns three orthogonal directions.
+/// Returns three orthogonal directions for a sweep.
 std::array<Vector, 3> frame_of(unsigned sweep) {
   if (sweep == 0) return {Vector{1, 0, 0}, Vector{0, 1, 0}, Vector{0, 0, 1}};
   const double s = sweep;
@@ -188,7 +188,8 @@ class Placement {
     const ExtremeAngles angles = extreme_angles(p);
     return 1 + std::min({0.0, angles.least - least(tet), most(tet) - angles.most}) / tolerated;
   }
-  /// Returns the penalty of a tet, the fourth power of 1 minus its score, in whole units.
+  /// Returns the penalty of a tet: the fourth power of 1 minus its score, in units of `unit_of_penalty`,
+  /// rounded to a whole number.
   double penalty(Index tet, const Corners& p) const {
     const double missing = 1 - score(tet, p);
     return std::nearbyint(missing * missing * missing * missing / unit_of_penalty);
@@ -209,7 +210,7 @@ class Placement {
   }
 
   /// Moves vertices, inside regions and along their features, to places where the tets around them have
-  /// smaller penalties. Returns the visited tets.
+  /// smaller penalties. Returns the given tets and those around moved vertices.
   std::vector<Index> relax(std::vector<Index> tets) {
     for (unsigned sweep = 0; sweep < most_sweeps; ++sweep) {
       const std::vector<Index> movers = independent_vertices(tets, sweep);
@@ -237,7 +238,8 @@ class Placement {
     return h;
   }
 
-  /// Returns vertices that may gain from a move, no two of one tet.
+  /// Returns vertices of tets beyond the bounds on angles that are free and have tries left; no two of one
+  /// tet.
   std::vector<Index> independent_vertices(const std::vector<Index>& tets, unsigned sweep) const {
     std::vector<PetscInt> wishes(mesh_->points.size(), 0);
     for (const Index t : tets) {
@@ -249,8 +251,9 @@ class Placement {
     return independent(wishes, sweep);
   }
 
-  /// Returns the vertices marked in `wishes`, but only one of two that share a tet: the one whose place has
-  /// the greater hash. All ranks that have a vertex decide alike if they have the same wishes.
+  /// Returns the vertices marked in `wishes`, but only one of two that share a tet: the one whose hash, from
+  /// its place before this level and the sweep, is greater. All ranks that have a vertex decide alike if they
+  /// have the same wishes.
   std::vector<Index> independent(const std::vector<PetscInt>& wishes, unsigned sweep) const {
     std::vector<Index> vertices;
     std::vector<PetscInt> yields(mesh_->points.size(), 0);
@@ -267,7 +270,7 @@ class Placement {
     return vertices;
   }
 
-  /// Combines values of some vertices over the ranks, `width` values for each.
+  /// Combines the values of these vertices (`width` values for each) over the ranks that have them.
   void combine(const std::vector<Index>& vertices, std::vector<PetscReal>& values, MPI_Op operation,
                std::size_t width) const {
     const std::vector<std::size_t>& shared = vertices_.shared();
@@ -285,8 +288,8 @@ class Placement {
     for_each_shared([](const PetscReal& there, PetscReal& here) { here = there; });
   }
 
-  /// Returns the sum of the penalties of the tets around a vertex; if the sum is at least `enough`, may
-  /// return only a part of it that is at least `enough`, too.
+  /// Returns the sum of the penalties that the tets around a vertex have if it is at `place`; if the sum is
+  /// at least `enough`, maybe only a part of it that is at least `enough`, too.
   double penalty_around(Index vertex, const Point& place, double enough) const {
     double sum = 0;
     for (const Index t : tets_at_[vertex]) {
@@ -407,7 +410,7 @@ class Placement {
     return around;
   }
 
-  /// Moves vertices forward again that were moved back before, if their tets permit it by now. Returns
+  /// Moves vertices that were drawn back towards their places once more, if their tets now permit it. Returns
   /// whether any vertex moved.
   bool try_again(unsigned sweep) {
     std::vector<PetscInt> wishes(mesh_->points.size(), 0);

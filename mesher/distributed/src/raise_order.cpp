@@ -16,7 +16,7 @@ namespace collarmesh::distributed {
 
 namespace {
 
-/// The placement of mid-edge nodes of a mesh on many ranks on smooth features, such that no tet is inverted.
+/// A placement of mid-edge nodes on smooth features that inverts no tet, for a mesh on many ranks.
 class DistributedCurving {
  public:
   DistributedCurving(DM dm, const Shape& shape)
@@ -25,7 +25,7 @@ class DistributedCurving {
         mesh_(dm, 2),
         shared_(dm, 1) {}
 
-  /// Returns the vertices and the nodes of the edges.
+  /// Places the mid-edge nodes. Returns all points: the vertices, then the nodes of the edges.
   const std::vector<Point>& run() {
     agree(communicator_, [&] { find_ways(); });
     share_ways();
@@ -102,8 +102,8 @@ class DistributedCurving {
         curved_.push_back(t);
   }
 
-  /// Marks, in each invalid tet, the edges whose nodes have the longest displacement. Returns the marks, by
-  /// edge.
+  /// Returns marks by edge: marked are, in each invalid tet, the edges whose nodes have the longest
+  /// displacement.
   std::vector<PetscInt> faulty() const {
     std::vector<PetscInt> marks(ways_.size(), 0);
     const auto way_of = [&](std::size_t e) { return shares[back_[e]] * norm(ways_[e]); };

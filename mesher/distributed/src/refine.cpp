@@ -18,15 +18,16 @@ namespace {
 
 /// Rotations of a tet's corners. PETSc cuts the octahedron in the middle of a tet between the middles of the
 /// edges 01 and 23. A rotation of the first three corners by one of these amounts chooses another pair of
-/// edges. PETSc numbers the corners of the eight children so that their own diagonals are those of Bey's rule
-/// (Tetrahedral grid refinement, 1995): the four tets in the octahedron are cut next between the middles of
-/// this diagonal and of the opposite edge, the other four like the tet that they are similar to. By that rule
-/// all descendants of a tet have at most three shapes, which appear at the first level. So the diagonal is
-/// chosen only once, there. Choosing the best diagonal at each level would make ever new and worse shapes.
+/// edges. PETSc numbers the corners of the eight children so that later levels cut them along the diagonals
+/// of Bey's rule (Tetrahedral grid refinement, 1995): the four tets in the octahedron are cut next between
+/// the middles of this diagonal and of the opposite edge, the other four like the tet that they are similar
+/// to. By that rule all descendants of a tet have at most three shapes, which appear at the first level. So
+/// the diagonal is chosen only once, there. Choosing the best diagonal at each level would make ever new and
+/// worse shapes.
 constexpr std::array<PetscInt, 3> arrangements{0, 1, 2};
 
-/// Returns the quality of the four tets around the diagonal between the edges ij and kl: the smaller of their
-/// least angle and the difference between 180 degrees and their greatest angle.
+/// Returns the quality of the four tets around the diagonal between the middles of the edges ij and kl: their
+/// least dihedral angle or, if that is smaller, 180 degrees minus their greatest one.
 double goodness(const Corners& p, std::size_t i, std::size_t j, std::size_t k, std::size_t l) {
   const auto middle = [&](std::size_t a, std::size_t b) { return 0.5 * (p[a] + p[b]); };
   const Point from = middle(i, j), to = middle(k, l);

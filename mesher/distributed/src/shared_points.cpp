@@ -9,7 +9,8 @@ namespace collarmesh::distributed {
 
 namespace {
 
-/// An MPI type of several values of a basic type. For a single value PETSc accepts only its own name.
+/// An MPI type of several values of a basic type. For one value it is the basic type, because PETSc accepts
+/// no other.
 class UnitType {
  public:
   UnitType(MPI_Datatype basic, std::size_t width) : type_(basic), is_made_(width > 1) {

@@ -12,8 +12,8 @@
 namespace collarmesh::distributed {
 
 /// The points of one depth of a DMPlex (0 vertices, 1 edges, 2 faces, 3 tets), numbered from 0 on each rank,
-/// and which of them other ranks have, too. Combines their values by minima, maxima or sums of integers,
-/// whose results do not depend on the order.
+/// and which of them are shared: several ranks have them. Combines their values by minima, maxima or sums of
+/// integers, whose results do not depend on the order.
 class SharedPoints {
  public:
   SharedPoints(DM dm, PetscInt depth);

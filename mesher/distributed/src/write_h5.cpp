@@ -58,7 +58,7 @@ class GridMaker {
   }
 
  private:
-  /// Numbers each rank's vertices, then its mid-edge nodes, then the next rank's.
+  /// Numbers the nodes rank by rank; on each rank first its own vertices, then its own mid-edge nodes.
   void number_nodes() {
     const auto own = static_cast<PetscInt>(vertices_.owned_count() + (second_ ? edges_.owned_count() : 0));
     PetscInt next = 0;
@@ -142,7 +142,7 @@ class ValueFile {
     if (given == PETSC_FALSE) call(PetscOptionsClearValue(nullptr, option));
     call(PetscViewerPopFormat(viewer_));
   }
-  /// Writes rows. Returns their number on all ranks.
+  /// Writes rows. Returns the number of rows of all ranks together.
   std::int64_t write(const std::string& group, const std::string& name, const std::vector<PetscInt>& values,
                      std::size_t columns) {
     IS set = nullptr;
@@ -194,7 +194,8 @@ void write_text(const fs::path& path, const std::string& text) {
   if (!file) throw WriteError(fmt::format("{}: cannot be written; is the disk full?", path.string()));
 }
 
-/// Checks for disk space: it is better to report a full disk before writing than in the middle.
+/// Checks, before anything is written, that PETSc's integers can count the file's entries and that the disk
+/// has room for the file.
 void require_space(DM dm, const fs::path& path) {
   constexpr double bytes_per_tet = 150;  // lower bound
   const MPI_Comm communicator = PetscObjectComm(reinterpret_cast<PetscObject>(dm));

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns the tets of this rank.
+/// Returns the mesh of this rank without faces and edges.
 TetMesh piece_of(DM dm, int order, const std::map<Tag, Index>& regions) {
   LocalMesh mesh(dm, order);
   mesh.faces.clear(), mesh.face_patch.clear(), mesh.face_tag.clear(), mesh.face_mid_nodes.clear();

@@ -77,14 +77,14 @@ struct CheckReport {
 
 /// Recomputes every guarantee from the mesh alone, independently of how it was made: positive volumes,
 /// conformity, watertight regions, region volumes, curves as unions of edges, facets as unions of faces,
-/// equal areas of facets, radius-edge ratio or angles, surface distance. A region may lose or gain 5% of its
-/// volume with elements of first order, 1% with those of second order, unless the bounds ask for a distance;
-/// a warning names regions that are more than 2% off. The same allowance holds for the volumes that closed
-/// surfaces enclose (`shells_of`). Averaged over a patch, walls keep at least half of their thickness and
-/// gaps half of their width. A mesh read from a file (no feature indices) is matched to the complex by tags
-/// and position; it is matched by position alone if its tags are not the complex's or if it has no boundary
-/// triangles or curve edges. Tets count as cells of a collar only at creases of the complex. Cancellation
-/// takes effect between groups of guarantees.
+/// equal areas of planar patches, radius-edge ratios, or angles of thin tets and of collars, surface
+/// distance. A region may lose or gain 5% of its volume with elements of first order, 1% with those of second
+/// order, or more if `Bounds::distance` is given; a warning names regions that are more than 2% off. The same
+/// allowance holds for the volumes that closed surfaces enclose (`shells_of`). Averaged over a patch, walls
+/// keep at least half of their thickness and gaps half of their width. A mesh read from a file (no feature
+/// indices) is matched to the complex by tags and position; it is matched by position alone if its tags are
+/// not the complex's or if it has no boundary triangles or curve edges. Tets count as cells of a collar only
+/// at creases of the complex. Cancellation takes effect between groups of guarantees.
 CheckReport check(const TetMesh& mesh, const Plc& plc, const CheckOptions& options = {},
                   const Execution& execution = {});
 

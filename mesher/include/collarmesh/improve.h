@@ -17,9 +17,9 @@ struct ImproveOptions {
   double thin_above = 0;  ///< radius-edge ratio above which later stages call tets thin; 0: the bound on the
                           ///< ratio
   bool move_vertices = true;   ///< also move, insert and remove vertices instead of only changing connections
-  bool keep_vertices = false;  ///< at corners of thin tets insert and remove no vertices, unless an angle
-                               ///< exceeds the bound for thin tets: a coarsened mesh has as few vertices as
-                               ///< it needs
+  bool keep_vertices = false;  ///< insert and remove no vertices for a poor tet with thin tets at its corners
+                               ///< (a coarsened mesh has as few vertices as it needs), unless an angle of
+                               ///< the poor tet exceeds the bound for thin tets
   double edges_per_hole = 0;   ///< as MeshOptions::edges_per_hole
   unsigned passes = 3;         ///< maximum number of passes, each over the tets that are still poor
   unsigned threads = 0;        ///< maximum number of threads; 0: all cores. The result does not depend on it
@@ -30,8 +30,8 @@ struct ImproveOptions {
 ImproveOptions improve_options(unsigned level);
 
 struct ImproveReport {
-  std::size_t candidates = 0;  ///< tets below the bound at the beginning
-  std::size_t remaining = 0;   ///< tets below the bound at the end
+  std::size_t candidates = 0;  ///< tets worse than `min_dihedral` at the beginning
+  std::size_t remaining = 0;   ///< tets worse than `min_dihedral` at the end
   std::size_t edge_removals = 0, boundary_flips = 0, moved_vertices = 0, contracted_edges = 0,
               inserted_vertices = 0;
   /// Number of detours: sequences of operations that first made tets worse and then better, and single
@@ -49,11 +49,11 @@ struct ImproveReport {
 /// sliver with two faces on a smooth patch is removed from its region.
 /// For the few tets that no operation improves, tries an operation that makes tets worse and improves its
 /// result; undoes both unless the tets are better afterwards, compared from the worst one up. No other
-/// operation makes the worst tet of its cavity worse, breaks the radius-edge bound (by a tet that is not
-/// thin), touches a collar, leaves the plane of a planar patch, or puts faces or edges farther than the
-/// distance from their smooth patch or curve.
-/// Preconditions: `mesh` comes from `generate` for `plc`, first order, with the same `distance`. Cost: linear
-/// in the tets; poor tets cost little if they can reach the bound.
+/// operation makes the worst tet of its cavity worse, makes a tet exceed the radius-edge bound if it may not
+/// be thin, touches a collar, leaves the plane of a planar patch, or puts faces or edges farther from their
+/// smooth patch or curve than `bounds` allow. Preconditions: `mesh` comes from `generate` for `plc`, first
+/// order, with the same `Bounds::distance`. Cost: linear in the tets; poor tets cost little if they can reach
+/// the bound.
 ImproveReport improve(TetMesh& mesh, const Plc& plc, const ImproveOptions& options = {},
                       const Execution& execution = {});
 

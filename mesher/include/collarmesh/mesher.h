@@ -112,8 +112,8 @@ enum class MeshStatus {
 struct WorkCounts {
   std::size_t located = 0;         ///< points and protective balls that were located at a mesh vertex
   std::size_t relocated = 0;       ///< moves of such a point or ball to a new, nearer vertex
-  std::size_t looks = 0;           ///< inspections of such a point or ball because of a new vertex, or of a
-                                   ///< candidate for one
+  std::size_t looks = 0;           ///< inspections of such a point or ball because of a new vertex or
+                                   ///< of a candidate for a new vertex
   std::size_t gap_queries = 0;     ///< queries of the gap size, with collars created during refinement
   std::size_t gap_cells = 0;       ///< Voronoi cells that these queries explored
   std::size_t gap_interviews = 0;  ///< pieces of features whose distance the queries of gap sizes computed

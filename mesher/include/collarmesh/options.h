@@ -38,7 +38,7 @@ struct RunOptions : PipelineOptions {
   std::vector<std::string> reports = {};
   std::string trace_folder = {};  ///< folder for the steps of the run
   ProgressStyle progress = ProgressStyle::automatic;
-  unsigned levels = 1;        ///< times that every tet is cut into eight, on many ranks
+  unsigned levels = 1;        ///< number of times that collarmesh-mpi cuts every tet into eight
   double slack = 10;          ///< degrees by which angles after these cuts may go beyond those of the coarse
                               ///< mesh
   bool keep_invalid = false;  ///< write meshes with elements that no solver can use, too
@@ -111,7 +111,7 @@ struct Option {
 /// Returns all options, in the order of the help. Some have a second row for another command.
 const std::vector<Option>& option_table();
 
-/// Returns the options with the changes that the profile of `mesh` makes.
+/// Returns the options with the changes that their `mesh.profile` makes.
 RunOptions with_profile(RunOptions options);
 
 /// Throws OptionError for values out of the range of their option and for values that contradict each other.

@@ -25,11 +25,11 @@ PartitionMeasures measure_partitions(const TetMesh& mesh);
 void require_partitioner();
 
 /// Divides the tets among ranks (`TetMesh::tet_partition`), so that few faces lie between two partitions. No
-/// partition is empty, and none has more tets than 1.03 times the mean, or the mean rounded up. The result is
-/// the same on any machine and with any number of threads. Throws OptionError unless `partitions` is from 1
-/// to the number of tets, and as `require_partitioner` does. Cost: n log(partitions) for n tets, and at worst
-/// another n for each of the few tets by which Scotch exceeds that bound. Memory: temporarily 200 bytes per
-/// tet.
+/// partition is empty, and none has more tets than 1.03 times the mean or, if that is more, the mean rounded
+/// up. The result is the same on any machine and with any number of threads. Throws OptionError unless
+/// `partitions` is from 1 to the number of tets, and as `require_partitioner` does. Cost: n log(partitions)
+/// for n tets, and at worst another n for each of the few tets by which Scotch exceeds that bound. Memory:
+/// temporarily 200 bytes per tet.
 void partition(TetMesh& mesh, unsigned partitions);
 
 }  // namespace collarmesh

@@ -60,8 +60,8 @@ struct PipelineOptions {
   bool trace = false;             ///< fill in PipelineResult::trace
   unsigned partitions = 0;        ///< number of ranks to divide the tets among (see `partition`); 0: no
                                   ///< partition
-  /// The geometry that the facets approximate, such as a CAD shape. The mesh keeps tighter bounds at first,
-  /// so that its vertices can move onto this geometry; may be empty.
+  /// The geometry that the facets approximate, such as a CAD shape. Until the vertices move onto this
+  /// geometry, the mesh keeps tighter bounds. May be empty.
   ExactGeometry exact = {};
   ShapeMeasures exact_measures = {};  ///< measures of that geometry, for the certificate; may be empty
   /// For `remesh` without a complex: moves nodes on curved faces and curves onto a smooth surface. It passes
@@ -69,7 +69,7 @@ struct PipelineOptions {
   bool smooth_surface = false;
 };
 
-/// Returns the options with the changes that the profile of `mesh` makes.
+/// Returns the options with the changes that their `mesh.profile` makes.
 PipelineOptions with_profile(PipelineOptions options);
 
 /// The result of a run. It has a mesh only if `result.status` is complete or guarantee_missed.
@@ -115,7 +115,7 @@ class ComplexSource {
 /// fewest findings. Where features thinner than the feature size make a refinement far too fine, tries
 /// constrained tetrahedra, then coarser repairs (`coarser_repairs`). Makes thin rods from rings of vertices
 /// instead of refining them, if nothing but one size is asked for. If cells have first order, no distance
-/// is asked for and a region's volume is off by more than 2%, makes a passing mesh again, nearer to the
+/// is asked for and a region's volume is off by more than 2%, a mesh that passes is made again, nearer to the
 /// surfaces, at most twice and each time in at most half of the time that the time limit leaves. A refinement
 /// ends early at a bound on vertices, so that coarser repairs can be tried; these must lose no body, region,
 /// name or tag except numbers of CAD faces. If none of them does better, the first complex is meshed within

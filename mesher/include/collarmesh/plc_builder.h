@@ -20,7 +20,7 @@ struct PlcOptions {
   /// Distance of the box from its contents, relative to the largest side of their bounding box.
   double box_margin = 1;
   double feature_angle =
-      30;  ///< degrees; edges that deviate more from flat are segments. 0: every non-coplanar edge
+      30;  ///< degrees; edges where the surface turns by more are segments. 0: every non-coplanar edge
   double planar_tolerance = 1e-6;  ///< relative to the bounding-box diagonal; 0: the exact predicate
   double weld = 1e-9;              ///< relative to the bounding-box diagonal; points closer than this are
                                    ///< merged
@@ -59,7 +59,7 @@ struct PlcSummary {
         triangles = 0, regions = 0;
   double diagonal = 0;
   double smallest_angle = 180;  ///< degrees; smallest angle between any two features that meet
-  double shortest_segment = 0;  ///< smallest distance of adjacent feature vertices, input units
+  double shortest_segment = 0;  ///< smallest distance between feature vertices that a curve joins
   double spread = 0;            ///< diagonal / shortest feature length
   double largest_deviation = 0;
   std::vector<Crease> creases;  ///< creases below the given threshold

@@ -11,7 +11,7 @@
 namespace collarmesh {
 
 struct ProjectOptions {
-  Bounds bounds = {};  ///< bounds that no tet breaks; vertices farther than `distance` from their feature
+  Bounds bounds = {};  ///< bounds that no tet breaks; vertices farther than its `distance` from their feature
                        ///< stay where they are
   /// Absolute; a vertex that stays nearer than this to its feature is not listed as an exception.
   double tolerance = 1e-9;
@@ -39,12 +39,12 @@ struct ProjectReport {
 /// Moves the vertices on curves and patches onto the exact geometry. No move inverts a tet, breaks the
 /// radius-edge bound or, in a collar, the bound on dihedral angles. If a move would do so, the tet's other
 /// corners first move inside their region or along their exact features, so that faces and edges stay within
-/// half of the tolerance (`ProjectOptions::bounds`) of the exact geometry. A vertex that cannot reach its
-/// place in this way stays where it is; the report lists it as an exception. On curves and patches that are
-/// straight or planar in the complex but not in the exact geometry, vertices go only as near as the complex
-/// permits. Preconditions: `mesh` comes from `generate` for `plc`, first order; `exact` is idempotent: it
-/// does not move points that lie on the geometry. Cost: linear in the tets, with a large factor for those
-/// that would become invalid.
+/// half of the surface distance (that of `ProjectOptions::bounds`) of the exact geometry. A vertex that
+/// cannot reach its place in this way stays where it is; the report lists it as an exception. On curves and
+/// patches that are straight or planar in the complex but not in the exact geometry, vertices go only as near
+/// as the complex permits. Preconditions: `mesh` comes from `generate` for `plc`, first order; `exact` is
+/// idempotent: it does not move points that lie on the geometry. Cost: linear in the tets, with a large
+/// factor for those that would become invalid.
 ProjectReport project_boundary(TetMesh& mesh, const Plc& plc, const ExactGeometry& exact,
                                const ProjectOptions& options = {}, const Execution& execution = {});
 

@@ -19,7 +19,8 @@ struct RemeshResult : SoupPipelineResult {
   RemeshReport remeshing;
 };
 
-/// Sets options that depend on the complex of the mesh, such as a size field defined by its features.
+/// A function that sets options which depend on the complex of the mesh, such as a size field defined by its
+/// features.
 using AdaptOptions = std::function<void(const Plc&, PipelineOptions&)>;
 
 /// Adapts any tetrahedral mesh to target edge lengths, finer or coarser. Divides edges longer than sqrt 2

@@ -144,7 +144,7 @@ struct RepairedPlc {
 };
 
 /// Returns `plc`, the complex of the soups, unless it has features below the tolerance: curves shorter than
-/// it, slits, or features that come closer to each other than the tolerance without meeting. In that case
+/// the tolerance, slits, or features that come closer to each other than that without meeting. In that case
 /// returns the complex of the repaired soups. If the features cannot be removed, returns `plc` with a
 /// warning.
 RepairedPlc remove_noise(Plc plc, std::span<const PolygonSoup> soups, const PlcOptions& options = {},

@@ -7,7 +7,7 @@
 
 namespace collarmesh {
 
-/// Sizes of the features of a shape, in powers of the input's unit.
+/// Measures of the features of a shape, in the input's unit of length, squared or cubed.
 struct ShapeMeasures {
   std::vector<double> volumes;  ///< by region; [0], the outside, is 0
   std::vector<double> areas;    ///< by patch

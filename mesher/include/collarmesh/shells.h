@@ -29,9 +29,9 @@ PipelineResult mesh_shells(const Plc& plc, const PipelineOptions& options = {},
 SoupPipelineResult mesh_shells(ComplexSource& source, const PipelineOptions& options = {},
                                const Execution& execution = {});
 
-/// Checks a mesh of some patches of a complex, as `check_shells` does: the patches with the names or numbers
-/// in `PipelineOptions::faces`. The exact measures are those of the whole complex. Throws OptionError if no
-/// patch has such a name.
+/// Checks a mesh of some patches of a complex, as `check_shells` does: of those with the names or numbers in
+/// `faces` (see `PipelineOptions::faces`). `CheckOptions::exact` has the measures of the whole complex.
+/// Throws OptionError if no patch has such a name.
 CheckReport check_faces(const TetMesh& mesh, const Plc& whole, const std::vector<std::string>& faces,
                         CheckOptions options = {}, const Execution& execution = {});
 

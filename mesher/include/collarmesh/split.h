@@ -13,7 +13,7 @@ namespace collarmesh {
 /// How a solver joins the two sides of a split patch.
 enum class Interaction { free, tie, contact };
 
-/// Numbers of the two sides of a split patch, whose nodes coincide: minus is behind its triangles, plus in
+/// The tags of the two sides of a split patch, whose nodes coincide: minus is behind its triangles, plus in
 /// front of them.
 struct Sides {
   Tag minus = 0, plus = 0;

@@ -1,4 +1,4 @@
-"""The program: `python -m collarmesh part.step -o part.vtu`, as the command `collarmesh`."""
+"""The program: `python -m collarmesh part.step -o part.vtu`, like the command `collarmesh`."""
 
 import os
 import pathlib

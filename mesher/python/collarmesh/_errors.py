@@ -121,8 +121,8 @@ def sizes_from_errors(
         return numpy.clip((goal / known) ** (1 / power), finest, coarsest)
 
     def excess(goal: float) -> float:
-        """Returns the number of tetrahedra above `elements`, or the total error below `error`. Falls as the error
-        per tetrahedron grows."""
+        """Returns by how much the number of tetrahedra exceeds `elements`, or the square of the total error falls
+        short of the square of `error`. Falls as `goal`, the error per tetrahedron, grows."""
         factor = factors(goal)
         if elements is not None:
             return float((factor**-3.0).sum() - elements)

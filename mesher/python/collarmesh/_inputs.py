@@ -76,7 +76,7 @@ class Complex:
         orientation; or a sequence of polygons in one plane. In such a sequence a polygon with two corners is a
         segment inside the facet, and one with one corner is a point inside it.
     facet_tags: (f,), integers that the faces of the mesh get as tags; default: facets are numbered.
-    facet_holes: by row of `facets`, a point in each hole that is cut out of the facet, in the facet's plane.
+    facet_holes: {row of `facets`: (k, 3)}, a point in each hole that is cut out of that facet, in its plane.
     segments: (s, 2), rows of `points`: edges that the mesh must have; segment_tags: (s,).
     holes: (h, 3), a point in each region that stays empty.
     regions: a sequence of (point, tag) or (point, tag, size): gives the region around the point this tag, and

@@ -50,8 +50,8 @@ _ARRAYS = {
 }
 # Arrays that meshes saved by earlier versions lack.
 _LATER = ("tet_partition", *(name for name in _ARRAYS if name.startswith(("prism", "pyramid", "quad"))), "tet_layer")
-# The positions of mid-edge nodes in cells of second order of meshio and VTK: corners, then ab, bc, ca, ad,
-# bd, cd.
+# The names of cells in meshio, and their numbers in VTK, by order. Tetrahedra of second order have, in both, the
+# corners, then the mid-edge nodes of ab, bc, ca, ad, bd, cd, as here.
 _MESHIO_CELLS = {
     1: {"tets": "tetra", "faces": "triangle", "edges": "line", "prisms": "wedge", "pyramids": "pyramid",
         "quads": "quad"},
@@ -63,7 +63,7 @@ _VTK_CELLS = {1: {"tets": 10, "prisms": 13, "pyramids": 14}, 2: {"tets": 24, "pr
 _VTK_WEDGE = [0, 2, 1, 3, 5, 4, 8, 7, 6, 11, 10, 9, 12, 14, 13]
 
 
-# The positions of these nodes in the order of dolfinx.
+# By order: for each node of a cell of dolfinx, its position in our cells.
 _DOLFINX_TETS = {1: [0, 1, 2, 3], 2: [0, 1, 2, 3, 9, 8, 5, 7, 6, 4]}
 _DOLFINX_TRIANGLES = {1: [0, 1, 2], 2: [0, 1, 2, 4, 5, 3]}
 # The triangles of a tetrahedron as seen from outside, with their mid-edge nodes.
@@ -154,7 +154,7 @@ class Mesh:
         cd, da, ae, be, ce, de; quad_mid_nodes (s, 4): of ab, bc, cd, da.
     names: names of tags by dimension, {2: {3: "inlet"}} for patch 3; 1 curves, 3 regions. Solids of STEP files have
         the names of their products.
-    colours: colours of tags, likewise, of a mesh made from a STEP file: {2: {3: "#ff0000"}}.
+    colours: colours of tags by dimension, of a mesh made from a STEP file: {2: {3: "#ff0000"}}.
     periodic: a dict for each pair of `periodic=`: "first" and "second", tags of patches; "rotation" (3, 3) and "shift"
         (3,), which take a point p of the first group to rotation @ p + shift; "nodes" (k, 2), each node of the first
         group with its image, mid-edge nodes included.

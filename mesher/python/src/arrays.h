@@ -18,7 +18,7 @@ namespace collarmesh::python {
 PolygonSoup soup_of(const pybind11::dict& arrays);
 /// Returns a dict of dimension to a dict of tag to "#rrggbb".
 pybind11::dict colours_of(const TagColours& colours);
-/// Returns the facets of a soup as triangles and polygons, with the same keys.
+/// Returns the points and facets of a soup, and the names of tags, with the same keys.
 pybind11::dict arrays_of(const PolygonSoup& soup);
 
 /// Makes a mesh from a dict. Keys: the names of TetMesh's arrays; feature_dimension and feature for the

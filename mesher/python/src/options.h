@@ -10,15 +10,16 @@
 
 namespace collarmesh::python {
 
-/// Options by their names on the command line, with `_` for `-`. Entries of a dict replace the defaults.
-/// `names` may be JSON, too.
+/// The options of a call. In Python they are a dict with the names of the command line, `_` for `-`; options
+/// that it lacks have their defaults. `names` may be JSON, too.
 struct Options : RunOptions {
   std::string size_field_json;              ///< empty: none
   SizesAt sizes_at;                         ///< a size field that takes arrays of places; empty: none
   std::string input_format, output_format;  ///< extensions with their dot; empty: the files' own
 };
 
-/// Returns the size field for this complex: from a file, a description or arrays; empty if none is given.
+/// Returns the size field for this complex: from a file, a JSON description or a callable of arrays; empty
+/// without these. Other size fields are in `mesh.size_field`.
 SizeField size_field_for(const Plc& plc, const Options& options);
 
 /// Reads options from a dict. Throws OptionError for values of the wrong type or out of range.

@@ -26,8 +26,8 @@ struct BudgetSpent : Error {
   using Error::Error;
 };
 
-/// The data that the working thread shares with its caller. It outlives both: an interrupted call may leave
-/// work that does not check the flag soon enough.
+/// The data that the working thread shares with its caller. It lives as long as either needs it: an
+/// interrupted call may leave work that does not check the flag soon enough.
 class Watch {
  public:
   /// Returns the execution for the work. It sends reports to the calling thread, which asks Python whether to

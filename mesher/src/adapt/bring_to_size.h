@@ -7,7 +7,7 @@
 
 namespace collarmesh::remeshing::adapting {
 
-/// `bring_to_size` makes other meshes with this number of consecutive seeds; then they repeat.
+/// `bring_to_size` makes different meshes with this number of consecutive seeds; then the meshes repeat.
 inline constexpr unsigned different_seeds = 4;
 
 /// Brings a mesh of a complex, with tets of any shapes, approximately to the target sizes: collapses short
@@ -16,8 +16,8 @@ inline constexpr unsigned different_seeds = 4;
 /// `options.max_vertices` vertices.
 bool bring_to_size(TetMesh& mesh, const Plc& plc, const MeshOptions& options, const Execution& execution);
 
-/// Improves tets and collapses short edges where that has become possible. The only bound is that no tet
-/// around gets much worse.
+/// Improves tets and collapses short edges where that has become possible, if no tet around gets much worse;
+/// then divides edges like `face_each_other` and improves tets, in several rounds.
 void relax(TetMesh& mesh, const Plc& plc, const MeshOptions& options, const Execution& execution);
 
 /// Divides edges on opposite sides of thin places, so that the new vertices face each other, where fewer tets

@@ -21,8 +21,8 @@ namespace {
 // If all tets at an edge are better than this, `least_share_` is relative to this quality.
 constexpr double good_enough = 1;
 constexpr std::size_t edges_between_reports = 4096;
-// Crossing edges are divided only if they cross in their middle part. An edge on a curve can only be divided
-// in its middle, so its middle part is smaller.
+// Edges are divided at a place that faces another edge or a vertex only if this place lies in their middle
+// part. An edge on a curve can only be divided in its middle, so its middle part is smaller.
 constexpr double middle_part = 0.4, middle_part_of_curve = 0.1;  // from the middle, relative to the edge
 // Limit of trials before the first division that helps, and the increase of this limit with each such
 // division.
@@ -91,7 +91,8 @@ std::size_t EdgeDivision::divide_each(const std::vector<LongEdge>& edges, std::s
   return count;
 }
 
-// Returns the length by the size field, which may ask for less between the vertices than at them.
+// Returns the length of an edge in target lengths, at its ends or, if that is more, at its middle: the size
+// field may ask for less there.
 double EdgeDivision::length_by_field(const LongEdge& edge) const {
   const Point &a = mesh().points[edge.a], &b = mesh().points[edge.b];
   return std::max(edge.length, distance(a, b) / sizing_.default_size(0.5 * (a + b)));
@@ -309,7 +310,7 @@ bool EdgeDivision::is_better(const Trial& trial) {
 }
 
 /// Returns where to divide an edge, as a share of its length: at the place nearest to the middle that faces a
-/// near vertex of the tets around; in the middle if no vertex faces the middle part of the edge.
+/// near vertex of the tets around; in the middle if no near vertex faces the middle part.
 double EdgeDivision::share_facing(Index a, Index b, const TetComplex::Ring& ring) const {
   constexpr double middle_part = 0.3, near = 0.1;  // relative to the edge
   const Point& from = mesh().points[a];

@@ -33,7 +33,7 @@ class EdgeDivision {
   /// positive.
   void accept_any_shape() { least_share_ = 0; }
   /// Divides edges of tets that miss their bounds: two opposite edges of a flat tet, as between the two sides
-  /// of a thin wall, at the places where they cross, which face each other; or one edge at a place that faces
+  /// of a thin wall, at the places where they are nearest to each other; or one edge at a place that faces
   /// a corner. Keeps a division if fewer tets miss their bounds then, or as many as before but the worst are
   /// better. Returns the number of tets whose edges it divided.
   std::size_t divide_crossing(const Execution& execution);

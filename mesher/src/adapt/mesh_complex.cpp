@@ -19,8 +19,8 @@ namespace collarmesh::remeshing::adapting {
 
 namespace {
 
-// If six times the volume of an inverted tet is below this share of the cube of its extent, the inversion may
-// be due to rounding of coordinates in files.
+// If six times the volume of an inverted tet is below this share of the cube of its box's diagonal, the
+// inversion may be due to rounding of coordinates in files.
 constexpr double rounded_volume = 1e-6;
 
 std::string text(const Point& p) { return fmt::format("({:.9g}, {:.9g}, {:.9g})", p.x, p.y, p.z); }

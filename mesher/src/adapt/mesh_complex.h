@@ -25,7 +25,7 @@ struct CornerMesh {
 CornerMesh corners_of(const TetMesh& mesh);
 
 /// Builds the complex of a mesh. Its facets are the sides of tets at a boundary or between two regions, and
-/// listed faces inside a region. If the mesh has edges along all borders between tags of its faces, these
+/// listed faces inside a region. If the mesh lists edges wherever facets end, branch or change tags, these
 /// edges are its curves; otherwise folds above `options.feature_angle` are curves, too. Connected tets of one
 /// region form a region of the complex. Throws PlcError if the mesh does not conform, or if boundaries of its
 /// regions are inverted, one-sided or without area. Cost: O(n log n).

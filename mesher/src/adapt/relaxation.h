@@ -81,10 +81,11 @@ class Relaxation {
   coarsening::CoarseningRule rule_;
   const Execution& execution_;
   std::size_t collapses_ = 0, others_ = 0, steps_ = 0;
-  ChangeTimes changes_{mesh().points.size()};   // when tets at a vertex were removed, made or moved
-  ChangeTimes renewals_{mesh().points.size()};  // when tets at a vertex were made or moved
+  ChangeTimes changes_{mesh().points.size()};   // when tets at a vertex were removed, made or changed
+  ChangeTimes renewals_{mesh().points.size()};  // when tets at a vertex were made or changed
   OrderedSpeculation<Operations> speculation_{[this] { return Operations(edited_, rule_); }};
-  // Times at which an attempt last failed. The attempt is repeated only after a renewal.
+  // Times at which the collapse of a vertex, or the improvement of a tet by each means, last failed. It is
+  // tried again only after a renewal there.
   std::vector<std::uint32_t> kept_ = std::vector<std::uint32_t>(mesh().points.size());  // by vertex
   std::array<std::vector<std::uint32_t>, kinds_of_means> not_better_;                   // by tet
 };

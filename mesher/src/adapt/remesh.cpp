@@ -31,23 +31,23 @@ namespace collarmesh {
 namespace remeshing::adapting {
 namespace {
 
-// Limits on rounds and passes. Each round at least halves the longest edges of most tets, but halving alone
-// does not reach far finer sizes.
+// Limits on rounds and passes. Each round at least halves the longest edges of most tets, so sizes far finer
+// than the mesh take many rounds.
 constexpr unsigned most_rounds = 40, most_passes = 3;
-// Each round divides the distance of an edge from its curve or patch by four.
+// Each round divides the distance of an edge from its curve or patch by about four.
 constexpr unsigned most_distance_rounds = 6;
-// If an edge too far from its patch is divided, the faces at one half may be farther from the patch than the
-// old faces by this factor, until the other edges around are divided, too.
+// When an edge that is too far from its patch is divided, new faces may be this many times as far from the
+// patch as the faces before. They come nearer when the other edges around are divided, too.
 constexpr double distant_halves = 2;
 // If a pass of divisions changes a smaller share of the vertices, it is the last one.
 constexpr double least_share = 0.01;
-// Edges longer than this factor times the target are divided. At first the factor is such that halves are no
-// shorter than the edges that coarsening collapses; later, such that edges made by coarsening are not
-// divided.
+// Edges longer than this factor times the target are divided. At first the factor is the square root of 2:
+// the halves of a longer edge are nearer to the target than the edge is. Later it is such that edges made by
+// coarsening are not divided.
 constexpr double longest_at_first = 1.4142, longest_later = coarsening::CoarseningRule::longest_new;
-// Larger than any ratio: with this bound only the worst tet around limits an operation.
+// Larger than any radius-edge ratio: with this bound only the worst tet around limits an operation.
 constexpr double any_ratio = 1e12;
-// Smaller than any ratio: with this bound angles alone decide, and slivers with a small ratio are forbidden.
+// Smaller than any radius-edge ratio: with this bound angles alone decide, and slivers are forbidden.
 constexpr double no_ratio = 0.1;
 // With a given complex or a reconstructed surface, operations may use the share `distance_left` of the
 // tolerance: the rest is for points between those that they test, and for moves onto exact geometry.
@@ -58,8 +58,8 @@ constexpr unsigned most_rounds_of_poor = 4;
 // bounds on angles, and more than `least_beyond` is so although short edges of the surface lower the bounds
 // beside them.
 constexpr double mostly = 0.1, least_beyond = 0.02;
-// If the smallest angle of a mesh, away from creases and narrow places, is at least this (degrees), the mesh
-// keeps it.
+// If the smallest angle of a mesh, away from creases and narrow places, is at least this (degrees),
+// remeshing keeps it so.
 constexpr double good_angle = 15;
 
 class Remeshing {
@@ -279,7 +279,8 @@ class Remeshing {
     return options;
   }
 
-  /// Divides long edges until none is left, or none of those left can be divided.
+  /// Divides long edges until none is left, or none of those left can be divided. Returns how many edges it
+  /// has divided.
   std::size_t refine(bool first) {
     EditableMesh piece = edited();
     if (first) improve_shapes(piece, false);

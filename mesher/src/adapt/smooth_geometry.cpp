@@ -81,7 +81,7 @@ class SmoothCurve {
     return at(segment, std::clamp(u, 0.0, 1.0));
   }
 
-  /// The tangent at a point of the polyline; zero where the curve does not bend smoothly.
+  /// Returns the tangent at a point of the polyline; zero where the curve does not bend smoothly.
   Vector tangent(std::size_t i) const { return bends_[i] != 0 ? tangents_[i] : Vector{}; }
 
  private:
@@ -102,7 +102,8 @@ class SmoothCurve {
     return direction > 0 ? (segment + 1) % count : (segment + count - 1) % count;
   }
 
-  /// Returns the parameter at which p lies in the plane perpendicular to the interpolated tangent.
+  /// Returns the parameter of the point on the segment from which the way to p is perpendicular to the
+  /// interpolated tangent.
   double solve(Index segment, const Point& p) const {
     const Point& a = points_[segment];
     const Vector along = points_[end_of(segment)] - a, t = tangents_[segment],
@@ -174,7 +175,7 @@ class SmoothPatch {
   // By triangle.
   std::vector<Corners> triangles_;
   std::vector<Corners> neighbours_;             // across the side opposite each corner; none at the border
-  std::vector<std::array<double, 6>> heights_;  // heights of the cubic along 01, 10, 12, 21, 20, 02, see `at`
+  std::vector<std::array<double, 6>> heights_;  // heights at control points 01, 10, 12, 21, 20, 02, see `at`
   std::optional<TriangleHierarchy> hierarchy_;
 };
 

@@ -29,7 +29,7 @@ constexpr unsigned most_colours = 64;
 
 /// Returns the mean ratio to the power of 3/2: 1 for a regular tet, not positive for an inverted one.
 double mean_ratio(const Corners& p) {
-  constexpr double of_regular = 20.784609690826528;  // 12 sqrt(3): (sum of squares)^(3/2) over six volumes
+  constexpr double of_regular = 20.784609690826528;  // 12 sqrt(3): (sum of squares)^(3/2) / (6 volume)
   double squares = 0;
   for (const auto& [i, j] : cell_shapes::corner_pairs) squares += squared_distance(p[i], p[j]);
   return of_regular * six_volume(p[0], p[1], p[2], p[3]) / (squares * std::sqrt(squares));

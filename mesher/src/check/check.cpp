@@ -140,7 +140,7 @@ void note_layers(const TetMesh& mesh, CheckReport& report) {
                   layers.prisms.size(), layers.pyramids.size(), layers.quads.size()));
 }
 
-/// Judges the angles of the tets beside layers. `to_check`: the mesh with its layers cut into tets.
+/// Judges the angles of the tets outside layers. `to_check`: the mesh with its layers cut into tets.
 void check_core(const TetMesh& mesh, const MeshToCheck& to_check, CheckReport& report) {
   TetMesh labelled = mesh;
   labelled.features = features_of(to_check);

@@ -35,9 +35,9 @@ class CreaseCorners {
     std::sort(edges_.begin(), edges_.end());
   }
 
-  /// Returns 1 for a star, 2 for a book, 0 for neither. Each vertex on a crease is the centre of a ball. A
-  /// star has one corner on a crease, the centre of its ball; a book has two, the centre and a neighbour of
-  /// it.
+  /// Returns 1 for a star, 2 for a book, 0 for neither, in a mesh that was not coarsened. There each vertex
+  /// on a crease is the centre of a ball. A star has one corner on a crease, the centre of its ball; a book
+  /// has two, the centres of two balls, joined by an edge on the crease.
   std::uint8_t kind_in_balls(const std::array<Index, 4>& tet) const {
     std::array<Index, 4> corners;
     const auto end =
@@ -46,8 +46,8 @@ class CreaseCorners {
     if (end - corners.begin() != 2) return 0;
     return is_edge(corners[0], corners[1]) ? 2 : 0;
   }
-  /// Returns 1 for a star, 2 for a book, 0 for neither, in a coarsened mesh, where all cells that touch a
-  /// crease belong to its collar.
+  /// Returns the same for a coarsened mesh, where all cells that touch a crease belong to its collar: 2 if
+  /// two corners are joined by an edge on the crease, else 1.
   std::uint8_t kind_of_touching(const std::array<Index, 4>& tet) const {
     if (std::none_of(tet.begin(), tet.end(), [&](Index p) { return on_crease_[p]; })) return 0;
     for (unsigned i = 0; i < 4; ++i)

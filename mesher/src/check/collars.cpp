@@ -12,7 +12,7 @@ namespace collarmesh::checks {
 
 namespace {
 
-constexpr double distance_slack = 1 - 1e-9;  // relative tolerance of distances
+constexpr double distance_slack = 1 - 1e-9;  // factor for distances that leaves room for rounding
 
 double to_triangle(const Point& p, const std::array<Point, 3>& t) {
   return std::sqrt(squared_distance_to_triangle(p, t[0], t[1], t[2]));
@@ -45,16 +45,16 @@ class CollarCheck {
     std::array<Index, 3> points;
   };
 
-  // Returns the ball's centre before vertices moved onto exact geometry: gaps and overlaps are measured
-  // against the complex, not the exact geometry.
+  // Returns where the ball's centre was before vertices moved onto exact geometry: gaps and overlaps are
+  // measured in the complex, not in the exact geometry.
   const Point& centre(Index ball) const { return balls_[ball].centre; }
   double radius(Index ball) const { return balls_[ball].radius; }
   const TetMesh::VertexFeature& feature_of(Index ball) const {
     return to_check_.mesh.features[balls_[ball].point];
   }
 
-  // Checks where the centres are. A vertex of the complex stays where it is; a point on a curve may move onto
-  // exact geometry, within the distance tolerance.
+  // Checks how far the points at the centres have moved since the balls were made. A vertex of the complex
+  // must not move; a point on a curve may move onto exact geometry, within the distance tolerance.
   void check_centres() {
     for (Index b = 0; b < balls_.size(); ++b) {
       const Point& now = to_check_.point(balls_[b].point);
@@ -95,7 +95,7 @@ class CollarCheck {
     return element.dimension == 2 && plc_.curve_on_patch(v.feature, element.feature);
   }
 
-  // Checks the distances of balls from features and from each other.
+  // Checks the distances of balls from the features of the complex and from each other.
   void look_around() {
     std::vector<Box> boxes;
     for (Index b = 0; b < balls_.size(); ++b) {

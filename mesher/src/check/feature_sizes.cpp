@@ -19,8 +19,8 @@ void take_exact(const std::vector<double>& exact, std::vector<double>& values) {
     if (std::isfinite(exact[i])) values[i] = exact[i];
 }
 
-/// Returns the lengths of the sides of faces, each side once (dimension 2), or of the edges (dimension 1).
-/// Both count as straight.
+/// Returns the lengths of the sides of faces, each side once (dimension 2), or of the edges (dimension 1), as
+/// if they were straight.
 std::vector<double> lengths_of_sides(const TetMesh& mesh, int dimension) {
   std::vector<double> lengths;
   const auto add = [&](Index a, Index b) { lengths.push_back(distance(mesh.points[a], mesh.points[b])); };

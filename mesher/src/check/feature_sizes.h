@@ -29,8 +29,7 @@ struct AllowedArea {
 /// border times the distance that it may move, and by rounding.
 AllowedArea planar_area(const MeshToCheck& to_check, Index patch);
 
-/// Returns the sizes of the features of the complex; replaces them by those of the exact geometry where these
-/// are known.
+/// Returns the sizes of the features of the exact geometry where known, else of the complex.
 ShapeMeasures input_sizes(const MeshToCheck& to_check);
 
 /// Fills in the report for a mesh without tets: the sizes of the features up to a dimension (1 or 2), in the

@@ -12,7 +12,7 @@
 ///    second_order.cpp. Otherwise declare a check in mesh_to_check.h and call it from `judge` in check.cpp,
 ///    for meshes of triangles alone from `judge_shells` in shells.cpp, of curve edges alone from
 ///    `judge_lines` in lines.cpp.
-/// 3. Under MPI nothing of this runs by itself: call the predicate from `Certification` in
+/// 3. Under MPI none of this runs by itself: call the predicate from `Certification` in
 ///    distributed/src/certify.cpp, for tets in `check_tets`, for nodes in `check_points`. `gather` collects
 ///    the findings of all ranks. A measure of the whole mesh is summed in `sum_up` and judged in
 ///    `compare_with_complex`. Guarantees that only many ranks need, as "shared_places", have their names
@@ -37,15 +37,15 @@ inline constexpr char vertex_feature[] = "vertex_feature";  ///< a vertex lies o
 inline constexpr char positive_volume[] = "positive_volume";  ///< positive by exact arithmetic
 inline constexpr char distinct_tets[] = "distinct_tets";
 inline constexpr char conforming[] = "conforming";    ///< a face has at most two tets, on its two sides
-inline constexpr char radius_edge[] = "radius_edge";  ///< bound on tets that are neither thin nor in collars
-inline constexpr char thin_angles[] = "thin_angles";  ///< angles of tets that exceed the radius-edge bound
+inline constexpr char radius_edge[] = "radius_edge";  ///< bound for tets that are neither thin nor in collars
+inline constexpr char thin_angles[] = "thin_angles";  ///< angle bounds of tets beyond the radius-edge bound
 inline constexpr char collar_dihedral[] = "collar_dihedral";  ///< dihedral angles in collars
 /// Each tet that needs an interior node has a corner on no face.
 inline constexpr char interior_node[] = "interior_node";
 
 // Guarantees of the balls of the collars, if the mesh has them.
-inline constexpr char collar_centre[] = "collar_centre";  ///< a ball's centre is where its point is
-inline constexpr char collar_gap[] = "collar_gap";        ///< radius at most a third of the gap size
+inline constexpr char collar_centre[] = "collar_centre";  ///< a ball's centre is where its mesh point is
+inline constexpr char collar_gap[] = "collar_gap";        ///< radius at most a third of the gap size there
 inline constexpr char collar_disjoint[] =
     "collar_disjoint";  ///< balls of different creases are apart; consecutive balls meet in a circle that no
                         ///< third ball reaches
@@ -109,7 +109,7 @@ inline constexpr std::array<std::string_view, 14> of_shapes{
 
 namespace collarmesh {
 
-/// A larger relative deviation of a region's volume calls for a warning.
+/// The largest relative deviation of a region's volume from the input's without a warning.
 inline constexpr double volume_warned_of = 0.02;
 
 }  // namespace collarmesh

@@ -316,8 +316,8 @@ void check_layer_cells(const TetMesh& mesh, CheckReport& report, std::size_t fin
 
 namespace {
 
-/// The bounds on the angles of tets beside layers. A node that layers pushed away counts as a node on its
-/// wall's features.
+/// The bounds on the angles of the core, the tets outside layers. A node that layers pushed away from its
+/// wall counts as a node on the wall's features.
 class CoreAngles {
  public:
   CoreAngles(const TetMesh& mesh, const std::vector<Index>& walls, const Plc& plc, const Bounds& bounds)
@@ -345,7 +345,8 @@ class CoreAngles {
  private:
   Index wall_of(Index v) const { return v < walls_.size() && walls_[v] != none ? walls_[v] : v; }
 
-  /// Finds the sides of tets that bound the core, with the patches of the walls below them.
+  /// Finds the sides of tets that bound the core or lie on patches, each with its patch. A side above layers
+  /// counts as lying on the wall below them.
   void find_surface() {
     std::vector<CellSide> sides;
     for (Index t = 0; t < mesh_.tets.size(); ++t)
@@ -403,7 +404,8 @@ class CoreAngles {
   std::vector<std::array<Index, 3>> faces_;
   std::vector<Index> patches_;
   std::optional<ForcedEdges> forced_;
-  std::vector<double> at_point_;  // bounds that sharp creases lower; empty without such creases
+  std::vector<double> at_point_;  // by point: least angle, lower at sharp creases; empty without such
+                                  // creases
 };
 
 }  // namespace

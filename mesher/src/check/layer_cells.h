@@ -17,19 +17,19 @@ inline constexpr char layer_sides[] = "layer_sides";  ///< boundaries and interf
 /// Each edge has one mid-edge node, which all cells at the edge share.
 inline constexpr char layer_mid_nodes[] = "layer_mid_nodes";
 inline constexpr char layer_volume[] = "layer_volume";  ///< regions keep their volumes
-inline constexpr char core_angles[] = "core_angles";    ///< angles of the tets beside the layers
+inline constexpr char core_angles[] = "core_angles";    ///< angles of the tets outside layers
 
 }  // namespace collarmesh::guarantee
 
 namespace collarmesh::checks {
 
-/// The least dihedral angle of tets beside layers, in degrees, if the bounds give none.
+/// The least dihedral angle of tets outside layers, in degrees, if the bounds give none.
 inline constexpr double least_core_angle = 8;
 
 /// Checks the cells of boundary layers together with the tets, by the mesh alone: arrays; positive Jacobians;
-/// each side of a cell has another cell behind it, turned the other way, or is listed among the faces or
-/// quadrangles; sides between regions are listed, too; nodes of second order. Adds findings. A mesh without
-/// layers may be given, too. Cost: O(n log n).
+/// each side of a cell either is a side of one other cell, which lies on its other side, or is listed among
+/// the faces or quadrangles; sides between regions are listed, too; nodes of second order. Adds findings. A
+/// mesh without layers may be given, too. Cost: O(n log n).
 void check_layer_cells(const TetMesh& mesh, CheckReport& report, std::size_t findings_per_guarantee = 20);
 
 /// Returns the volumes of regions, by index, of straight tets, prisms and pyramids.
@@ -40,7 +40,7 @@ std::map<Index, double> volumes_with_layers(const TetMesh& mesh);
 void check_layer_volumes(const std::map<Index, double>& before, const TetMesh& mesh,
                          const std::map<Index, double>& allowed, CheckReport& report);
 
-/// Checks the tets beside the layers as in a mesh without layers: the radius-edge ratio is within its bound,
+/// Checks the tets outside layers as in a mesh without layers: the radius-edge ratio is within its bound,
 /// or dihedral angles have the lower bound of thin tets and all angles are at most 150 degrees. Writes the
 /// mesh's angles and sizes to the report. `walls`: for each point, the wall's point below it, or none. Adds
 /// findings.

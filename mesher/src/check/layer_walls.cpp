@@ -38,7 +38,7 @@ bool comes_before(const WallGeometry::Edge& a, const WallGeometry::Edge& b) {
 
 constexpr unsigned weight_of_prism = 3, weight_of_pyramid = 2;
 
-/// A cell of a layer. The weight is the number of tets that it is divided into.
+/// A cell of a layer. Its weight is the number of tets into which it can be divided.
 struct LayerCell {
   std::array<Index, 3> below{};  // nodes of the wall, sorted
   Index region = none, layer = 0;
@@ -142,7 +142,7 @@ class WallCheck {
     return a.corners == b.corners && a.region == b.region;
   }
 
-  /// Reports the first entry of each list that the other one does not have.
+  /// Reports the first entry of each list that the other list lacks.
   template <class Entry, class Place>
   void report_difference(const std::vector<Entry>& before, const std::vector<Entry>& now,
                          std::string_view kind, const Place& place) {

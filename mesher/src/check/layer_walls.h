@@ -35,7 +35,7 @@ struct WallGeometry {
     std::array<Point, 2> ends;  ///< the lower one first
     Index curve, edge;
   };
-  /// A mid-edge node of the sides of triangles.
+  /// A mid-edge node of a side of a triangle.
   struct MidNode {
     std::array<Point, 2> ends;  ///< the lower one first
     Point place;
@@ -52,8 +52,8 @@ struct WallGeometry {
 /// Checks layers against the walls that were asked for and against the mesh before them: the triangles and
 /// edges of walls are the same, and so are their mid-edge nodes, except those listed as straightened; each
 /// cell of a layer lies above one triangle of a wall; above each triangle there are prisms in all layers (or
-/// their tets), or pyramids and tets, which leave it uncovered, or no cells; area and covered area of each
-/// patch are those that `layers` reports. Adds findings. Cost: O(n log n).
+/// the tets into which they are cut), or pyramids and tets, so that it is not covered, or no cells; area and
+/// covered area of each patch are those that `layers` reports. Adds findings. Cost: O(n log n).
 void check_layer_walls(const AskedWalls& walls, const WallGeometry& before, const TetMesh& mesh,
                        const LayersReport& layers, CheckReport& report,
                        std::span<const SecondOrderReport::Straightened> straightened = {});

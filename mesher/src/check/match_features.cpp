@@ -76,14 +76,15 @@ class PointSearch {
   std::vector<Index> order_;
 };
 
-// A vote that assigns pieces to features: the entities of a piece vote, by their size, for the feature
-// nearest to their middle.
+// A vote that assigns pieces to features: each entity of a piece votes for the feature nearest to its middle,
+// and its size is the weight of its vote.
 class Ballot {
  public:
   void vote(Index piece, Index feature, double weight) {
     if (feature != none) votes_.push_back({piece, feature, weight});
   }
-  /// Returns the feature with most votes for each piece; none for a piece without votes.
+  /// Returns for each piece the feature with the largest total weight of votes; none for a piece without
+  /// votes.
   std::vector<Index> count(std::size_t pieces) {
     std::stable_sort(votes_.begin(), votes_.end(), [](const Vote& a, const Vote& b) {
       return a.piece != b.piece ? a.piece < b.piece : a.feature < b.feature;
@@ -130,7 +131,8 @@ DisjointSets edge_pieces(const TetMesh& mesh, const std::vector<Index>& vertex_p
   return pieces;
 }
 
-// Joins faces between the same regions (and of one tag, if `by_tag`) that share an edge on no curve.
+// Joins faces between the same regions (and of one tag, if `by_tag`) that share an edge on no curve, which is
+// a side of no further face.
 DisjointSets face_pieces(const TetMesh& mesh, bool by_tag) {
   struct FaceEdge {
     std::array<Index, 2> ends;

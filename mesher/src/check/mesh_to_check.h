@@ -41,9 +41,9 @@ struct MeshToCheck {
   std::vector<double> curve_allowance, patch_allowance;
   std::shared_ptr<const RegionLocator> regions;
   FeatureMatch match;
-  std::vector<std::uint8_t> collar;  ///< by tet, as TetMesh::tet_collar: its mark, if the tet is at
-                                     ///< a crease of the complex
-  bool coarsened = false;            ///< if true, the bounds of other tets hold in collars, too
+  std::vector<std::uint8_t> collar;  ///< by tet, as TetMesh::tet_collar, but by its corners on creases of the
+                                     ///< complex: see find_collar_cells
+  bool coarsened = false;            ///< if true, tets in collars must keep the bounds of other tets, too
   /// The first tet that is part of a prism or pyramid; these cells are judged elsewhere, as a whole.
   Index first_part = none;
 
@@ -65,10 +65,10 @@ struct MeshToCheck {
 
 /// The tets that may exceed the radius-edge bound if their angles are bounded: dihedral angles from below,
 /// and dihedral and face angles by 150 degrees. Only marked tets and cells of collars in a coarsened mesh may
-/// exceed it; in a mesh from a file without marks, any tet may. The lower bound is smaller in two cases.
+/// exceed it; in a mesh from a file without marks, any tet may. The bound from below is smaller in two cases.
 /// Where features meet at less than twice the bound, half the angle between them is enough. For a tet with an
-/// edge that the input forces to be short, ForcedEdges::smallest_angle is enough. Both are halved if each tet
-/// needs an interior node.
+/// edge that the input forces to be short, ForcedEdges::smallest_angle is enough. Both of these bounds are
+/// halved if each tet needs an interior node.
 class ThinCells {
  public:
   static constexpr double largest_angle = largest_angle_of_thin_tets;
@@ -77,7 +77,7 @@ class ThinCells {
   explicit ThinCells(const MeshToCheck& to_check);
 
   bool claimed(Index tet) const;
-  /// Returns whether this tet may be thin.
+  /// Returns whether a tet is at a place where tets may be thin.
   bool has_place(Index tet) const;
   /// Returns the lower bound on a tet's dihedral angles, degrees.
   double smallest_angle(Index tet) const;
@@ -129,11 +129,12 @@ class Grouping {
 
 inline double area(const Point& a, const Point& b, const Point& c) { return 0.5 * norm(cross(b - a, c - a)); }
 
-/// Makes the mesh to check without matches of features and collars, which `judge` finds. Keeps references to
-/// the mesh and the complex.
+/// Makes the mesh to check, but leaves `match`, `collar` and `coarsened` to `judge`. Keeps references to the
+/// mesh and the complex.
 MeshToCheck make_mesh_to_check(const TetMesh& mesh, const Plc& plc, const CheckOptions& options);
 
-/// Checks that arrays have equal lengths and corners are in range. If false, no other check can run.
+/// Checks that arrays have equal lengths and corners are in range. If it returns false, no other check can
+/// run.
 bool check_arrays(const TetMesh& mesh, Findings& findings);
 
 /// Checks that points are finite, distinct and used by tets. Returns false if one is not finite.
@@ -143,12 +144,12 @@ bool check_points(const MeshToCheck& to_check, Findings& findings);
 /// finds the region of each connected part (bounded by listed faces and planar patches) from its largest tet.
 /// If most tags of faces or edges are missing or unknown to the complex, makes new faces and edges from the
 /// tets and the complex. The result has the complex's labels; a note says which were found. Returns nothing
-/// if no label is missing, or if tets lie outside, which is a finding. Precondition: check_arrays and
-/// check_points hold. Cost: O(n log n).
+/// if no label is missing, or if tets lie outside all regions, which is a finding. Precondition: check_arrays
+/// and check_points hold. Cost: O(n log n).
 std::optional<TetMesh> place_by_position(const MeshToCheck& to_check, CheckReport& report,
                                          Findings& findings);
 
-/// Checks that the labels are indices of the complex. If false, no other check can run.
+/// Checks that the labels are indices of the complex. If it returns false, no other check can run.
 bool check_labels(const TetMesh& mesh, const Plc& plc, Findings& findings);
 
 /// Checks volumes, shapes and region volumes of all tets.
@@ -185,9 +186,9 @@ void check_shape_kept(const MeshToCheck& to_check, CheckReport& report, Findings
 /// to_check.match is filled in. Cost: near linear, at most 4000 rays per patch.
 void check_thickness_kept(const MeshToCheck& to_check, CheckReport& report, Findings& findings);
 
-/// Compute the allowed distances. For straight curves and planar patches: a few times their own deviation
-/// from straight or planar, because the mesh's vertices may be extrapolated from the complex's, but at most
-/// the complex's planar tolerance. For other features: the distance tolerance. Rounding is added to all.
+/// Compute the allowed distances. For straight curves and planar patches: four times their own deviation from
+/// straight or planar, because the mesh's vertices may be extrapolated from the complex's, but at most the
+/// complex's planar tolerance. For other features: the distance tolerance. Rounding is added to all.
 std::vector<double> curve_allowances(const MeshToCheck& to_check);
 std::vector<double> patch_allowances(const MeshToCheck& to_check);
 
@@ -229,8 +230,8 @@ bool curve_is_outside(const MeshToCheck& to_check, Index curve);
 bool vertex_is_outside(const MeshToCheck& to_check, Index vertex);
 bool patch_is_outside(const MeshToCheck& to_check, Index patch);
 
-/// Warns of curves and vertices that are on no patch and lie outside all regions. The builder of the complex
-/// warns of patches outside all regions.
+/// Warns of curves and vertices that are on no patch and lie outside all regions. (The builder of the complex
+/// warns of patches outside all regions.)
 void warn_of_features_outside(const MeshToCheck& to_check, CheckReport& report);
 
 }  // namespace collarmesh::checks

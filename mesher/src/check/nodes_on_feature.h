@@ -8,7 +8,7 @@
 
 namespace collarmesh::checks {
 
-/// A curve or patch of the complex, for checking that its nodes are within the allowed distance of it.
+/// A curve or patch of the complex, for checking that the mesh's nodes on it are within the allowed distance.
 class NodesOnFeature {
  public:
   /// Keeps the mesh to check by reference.

@@ -21,7 +21,8 @@ struct PatchEdge {
   }
 };
 
-/// The edges of curves: in the complex, with the number of a patch's triangles there, and in the mesh.
+/// The edges on curves: those of the complex, with how many triangles of a patch meet there, and those of the
+/// mesh.
 class CurveUses {
  public:
   explicit CurveUses(const MeshToCheck& to_check);

@@ -84,7 +84,7 @@ class PatchCheck {
     return 0.5 * dot(cross(b - a, c - a), patch_.normal);
   }
 
-  // Compares the area of the faces with the patch's. An internal facet may be turned either way.
+  // Compares the area of the faces with the patch's. The faces of an internal patch may all be turned over.
   void check_area() {
     std::vector<double> areas;
     for (const Index f : faces_) {
@@ -102,7 +102,8 @@ class PatchCheck {
     compare_area(static_cast<double>(found));
   }
 
-  // Returns false, with a finding, if the face is turned against the plane.
+  // Returns false, with a finding, if the face is turned against the plane by more than the allowed distance
+  // from the plane can cause.
   bool check_fold(Index face, double signed_area) {
     const auto [a, b, c] = corners(face);
     const double longest = std::max({distance(a, b), distance(b, c), distance(c, a)});

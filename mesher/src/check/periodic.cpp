@@ -27,17 +27,17 @@ constexpr double unit_roundoff = std::numeric_limits<double>::epsilon() / 2;
 
 bool is_translation(const TetMesh::Motion& motion) { return motion.rows == TetMesh::Motion().rows; }
 
-/// Bounds the distance that rounding alone causes between an image and its node, at a distance r from the
-/// origin (the largest of a node, an image or the shift), with u = 2^-53. Let p, q be a node and its image, R
-/// and s the motion.
+/// Bounds the distance that rounding alone causes between an image and the place to which the motion takes
+/// its node. Let p be a node, q its image, R and s the rotation and shift of the motion, r the largest of
+/// |p|, |q| and |s|, and u = 2^-53.
 /// - Evaluating R p + s: three products and two sums for each row, |error| <= 3 u |R| |p| elementwise, at
 ///   most 3 sqrt(3) u r in norm as the rows have length 1; then the last sum, u r. Together e = (1 + 3
 ///   sqrt(3)) u r (terms in u^2 are negligible). If R is the identity, only the last sum is rounded.
 /// - In a cell of three pairs, two sequences of maps lead to a corner. Their results differ by the
 ///   rounding of all evaluations along both, at most six with those of this check.
 /// - A mid-edge node is the middle of two nodes: one sum on either side, u r each.
-/// - Corners that the input gives are not moved to their images. As a translation from the middle of one box
-///   to that of the other, the motion rounds three sums, u r each.
+/// - Corners that the input gives are not moved to their images, so the rounding of the motion itself counts:
+///   if it is a translation from the middle of one box to that of the other, three sums, u r each.
 double rounding_of(const TetMesh::Motion& motion, double r) {
   const double evaluation = is_translation(motion) ? 1 : 1 + 3 * std::sqrt(3.0);
   constexpr double evaluations = 6, others = 5;
@@ -266,8 +266,8 @@ bool commute(const TetMesh::Motion& f, const TetMesh::Motion& g, const Point& p)
   return distance(one, other) <= rounding_of(f, r) + rounding_of(g, r);
 }
 
-/// Checks edges of a cell, where a node has images by two pairs and each image has an image by the other
-/// pair. If the motions commute there, both second images must be the same node.
+/// Checks nodes at the edges of a periodic cell: they have images by two pairs, and each image has an image
+/// by the other pair. If the motions commute there, both second images must be the same node.
 void check_corners(const TetMesh& mesh, const std::vector<std::optional<Map>>& maps, Findings& findings) {
   for (std::size_t i = 0; i < maps.size(); ++i)
     for (std::size_t j = i + 1; j < maps.size(); ++j) {

@@ -30,7 +30,7 @@ std::vector<Tag> sorted_tags(const Features& features) {
   return tags;
 }
 
-// Returns whether most of the entities have a tag of the complex.
+// Returns whether at least half of the entities have a tag of the complex.
 template <class Features>
 bool are_known(const std::vector<Tag>& tags, const Features& features) {
   const std::vector<Tag> known = sorted_tags(features);
@@ -46,7 +46,7 @@ bool tell_apart(const Features& features) {
                      [&](const auto& feature) { return feature.tag != features.front().tag; });
 }
 
-// A triangle of three points that are corners of sides of tets or of listed faces.
+// A side of a tet or a listed face.
 struct ListedSide {
   Triangle corners;  // sorted
   Index tet;         // none: a listed face
@@ -131,8 +131,9 @@ struct CurveSegments {
   std::vector<double> lengths;  // by curve
 };
 
-// A test whether tags that are only numbers fit: whether most faces and edges of a sample lie on the patches
-// and curves of their tags. Such numbers change with the order of the facets.
+// A test of tags that are only numbers given by the builder of the complex, which change with the order of
+// the facets: they fit if at least half of the faces or edges in a sample are nearest to a feature with their
+// tag.
 class Numbers {
  public:
   explicit Numbers(const MeshToCheck& to_check) : to_check_(to_check) {}
@@ -212,8 +213,9 @@ class Placement {
   }
 
  private:
-  // Returns the listed edges that lie on no curve and have no tag that requires one: other programs list the
-  // edges along which they divide faces, and the seams of round faces. Empty if there are none.
+  // Marks the listed edges that are edges of tets but lie on no curve, and whose tag is not that of a curve:
+  // other programs list the edges along which they divide faces, and the seams of round faces. Returns no
+  // marks if there are none.
   std::vector<bool> stray_edges() const {
     const TetMesh& mesh = to_check_.mesh;
     if (mesh.edges.empty()) return {};
@@ -285,7 +287,8 @@ class Placement {
     std::sort(sides_.begin(), sides_.end());
   }
 
-  /// Calls visit(sides of tets, their number, listed face or none) for each triangle of points.
+  /// Calls visit(sides, number, face) for each triangle: the sides of tets there, their number, and the
+  /// listed face there, or none.
   template <class Visit>
   void for_each_triangle(const Visit& visit) const {
     for (std::size_t i = 0, j = 0; i < sides_.size(); i = j) {
@@ -404,8 +407,8 @@ class Placement {
     friend bool operator<(const PlaceOnCurve& a, const PlaceOnCurve& b) { return a.arc < b.arc; }
   };
 
-  // Makes edges on curves: the border edges of a bent curve if they are known, otherwise the edges of tets
-  // between consecutive points on the curve.
+  // Makes edges on curves: for a bent curve those that `border_edges` finds, if any; otherwise the edges of
+  // tets between consecutive points on the curve.
   void make_edges() {
     report_.notes.emplace_back(
         mesh_.edges.empty()
@@ -463,7 +466,7 @@ class Placement {
     return chains;
   }
 
-  // Returns the points that may be on curves: points of faces, or all points if a curve is on no patch.
+  // Returns the points that may be on curves: corners of faces or, if a curve is on no patch, of any cells.
   std::vector<Index> candidates() const {
     std::vector<bool> is_candidate(
         mesh_.points.size(),

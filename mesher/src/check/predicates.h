@@ -28,8 +28,8 @@ struct NamedFeature {
   Tag tag;
 };
 
-/// Adds a finding if a tet has no positive volume, by exact arithmetic; `volume` is for the message. Returns
-/// whether it is positive.
+/// Adds a finding unless the volume of a tet is positive by exact arithmetic; `volume` is for the message.
+/// Returns whether it is positive.
 bool check_orientation(const Named& tet, const std::array<Point, 4>& corners, double volume,
                        Findings& findings);
 
@@ -40,8 +40,8 @@ void check_jacobian(const Named& tet, const CurvedTet& nodes, Tag tag, Findings&
 void check_off_feature(std::string_view guarantee, const Named& node, const Point& at, double distance,
                        double allowed, const NamedFeature& feature, Findings& findings);
 
-/// Adds a finding unless `wanted` edges of a curve meet at a point of the curve, as in a chain. Returns
-/// whether they do; `edges` is their number.
+/// Adds a finding unless `wanted` edges of a curve meet at a point of the curve, as in a chain. `edges`: how
+/// many do. Returns whether these numbers are equal.
 bool check_edges_at(const NamedFeature& curve, const Point& at, std::ptrdiff_t edges, std::ptrdiff_t wanted,
                     Findings& findings);
 

@@ -68,7 +68,7 @@ const RegionLocator::Trees& RegionLocator::trees() const {
 }
 
 // Follows the ray from p through `target` to twice the target's distance. Returns the region on p's side of
-// the first triangle that it meets; none if it meets the border of a triangle.
+// the first triangle that the ray meets; none if the ray meets no triangle, or the border of any.
 Index RegionLocator::region_on_the_way(const Point& p, const Point& target) const {
   const Point beyond = target + (target - p);
   double first = INFINITY;

@@ -69,7 +69,7 @@ void check_shared(const MeshToCheck& to_check, Findings& findings) {
                  At{to_check.midpoint(first.edge)}, name_of_cell(second.dimension), second.cell, second.node,
                  second.edge[0], second.edge[1], what);
   };
-  // Sorts tets first, so that findings name the cells that differ from them.
+  // Sorts tets first, so that findings name the faces and edges whose nodes differ from those of tets.
   const auto before = [](const MidNode& a, const MidNode& b) {
     return a.dimension != b.dimension ? a.dimension > b.dimension : a.cell < b.cell;
   };

@@ -39,7 +39,8 @@ std::vector<double> enclosed_by(const std::vector<Shell>& shells, const MeshToCh
   return volumes;
 }
 
-/// Compares a volume with the input's; adds a finding or a warning.
+/// Compares a volume in the mesh (`made`) with that in the input. Adds a finding or a warning if they differ
+/// too much.
 void judge_volume(const MeshToCheck& to_check, const std::string& what, double made, double input,
                   const Point& where, Index id, CheckReport& report, Findings& findings) {
   const double largest = volume_allowance(to_check.mesh.order()), off = std::fabs(made - input);

@@ -60,8 +60,8 @@ struct PatchMeeting {
   }
 };
 
-/// Returns the meetings of patches that bound no region, one for each pair and value of `agree`. Edges of
-/// more than two triangles do not count.
+/// Returns where patches that bound no region meet: one edge for each pair of patches and value of `agree`.
+/// Edges of more than two triangles do not count.
 std::vector<PatchMeeting> meetings_of(const MeshToCheck& to_check, const Plc& plc) {
   struct Side {
     std::uint64_t edge;

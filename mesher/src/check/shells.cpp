@@ -50,7 +50,7 @@ class GivenCorners {
   bool is_edge(Index a, Index b) const {
     return std::binary_search(edges_.begin(), edges_.end(), edge_key(a, b));
   }
-  /// Returns whether the corner lies on a vertex of the complex, between two curves.
+  /// Returns whether a corner of a face is a vertex of the complex and both sides there lie on curves.
   bool is_corner(const std::array<Index, 3>& face, unsigned i) const {
     return is_vertex_[face[i]] && is_edge(face[i], face[(i + 1) % 3]) && is_edge(face[i], face[(i + 2) % 3]);
   }
@@ -169,7 +169,7 @@ void judge_shells(const TetMesh& given, const Plc& given_plc, const CheckOptions
   TetMesh mesh = given;
   Plc plc = given_plc;
   forget_regions(mesh, plc);
-  // Compute the tolerance before the regions are gone: it depends on them.
+  // Compute the tolerance from the complex that still has its regions: it depends on them.
   CheckOptions own = options;
   own.bounds.tolerance = tolerance_of_any_size(given_plc, options.bounds);
   MeshToCheck to_check = make_mesh_to_check(mesh, plc, own);

@@ -21,7 +21,7 @@ namespace {
 
 using Corners = std::array<Index, 3>;
 
-constexpr double rounding = 1e-10;  // relative tolerance of sums that are added in another order
+constexpr double rounding = 1e-10;  // relative tolerance: the same sums are added in another order
 
 /// Returns for each node the smallest node at the same place.
 std::vector<Index> places_of(const std::vector<Point>& points) {
@@ -67,7 +67,7 @@ class SplitCheck {
   }
   const Point& at(Index node) const { return mesh_.points[node]; }
 
-  /// Finds the sides of tets at nodes that share their place, sorted by place.
+  /// Finds the sides of the tets that have a node at the same place as another node. Sorts them by place.
   void find_sides() {
     for (Index t = 0; t < mesh_.tets.size(); ++t) {
       if (std::none_of(mesh_.tets[t].begin(), mesh_.tets[t].end(), [&](Index v) { return shared_[v]; }))
@@ -186,7 +186,7 @@ class SplitCheck {
   std::vector<PlacedSide> sides_;
 };
 
-/// Returns the areas of patches, by index, leaving out faces with some tags.
+/// Returns the areas of patches, by index, without the faces that have one of these tags.
 std::map<Index, double> areas_of(const TetMesh& mesh, const std::set<Tag>& left_out) {
   std::map<Index, double> areas;
   for (Index f = 0; f < mesh.faces.size(); ++f) {

@@ -12,7 +12,7 @@ namespace collarmesh::checks {
 
 namespace {
 
-constexpr double shape_slack = 1 + 1e-9;  // relative tolerance of the bounds on shape
+constexpr double shape_slack = 1 + 1e-9;  // factor for the bounds on shape that leaves room for rounding
 // Number of tets that a thread measures at once, and number of tets measured before their findings and sums
 // are added (4 MB).
 constexpr std::size_t measured_at_once = 4096, in_a_batch = 1 << 17;
@@ -30,10 +30,11 @@ CornersOfTet corners_of(const TetMesh& mesh, Index tet) {
 /// Tets whose angles miss their bounds. The findings list the worst ones first, with the features there.
 class MissedAngles {
  public:
-  /// `share`: the factor by which the tet's worst angle misses its bound; above 1.
+  /// `share`: the factor, above 1, by which the tet's worst angle misses its bound.
   void add(Index tet, double share) { missed_.push_back({tet, share}); }
 
-  /// Calls `add_finding(tet, features)`, with an empty text for findings that will not be listed.
+  /// Calls `add_finding(tet, features)` for each tet, the worst first. The text `features` is empty for
+  /// findings that will not be listed.
   template <class AddFinding>
   void report(const MeshToCheck& to_check, const AddFinding& add_finding) {
     if (missed_.empty()) return;
@@ -57,7 +58,8 @@ struct AllMissedAngles {
   MissedAngles collars, thin;
 };
 
-/// Notes the angles of a tet beside layers, which `check_core_angles` judges.
+/// Widens the report's extreme angles to those of a tet. In a mesh with layers `check_core_angles` judges the
+/// angles.
 void note_angles(const TetQuality& quality, CheckReport& report) {
   report.min_dihedral = std::min(report.min_dihedral, quality.min_dihedral);
   report.max_dihedral = std::max(report.max_dihedral, quality.max_dihedral);

@@ -40,13 +40,13 @@ struct Faces {
   }
 };
 
-/// Sums over rays from a side of a patch, weighted by areas.
+/// Sums of thicknesses over rays from one side of a patch, weighted by areas.
 struct Thicknesses {
   double area = 0;       // area from which rays were sent
   double area_with = 0;  // part of that area whose rays meet an opposite surface
   double input = 0, mesh = 0;
-  Point where;            // on the ray whose thickness differs most
-  double farthest = 0;    // its difference
+  Point where;            // on the ray on which the thickness in the mesh and in the complex differ most
+  double farthest = 0;    // that difference
   Index opposite = none;  // the patch where that ray ends
 };
 

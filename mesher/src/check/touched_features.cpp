@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t named_per_kind = 4;
 constexpr std::array<std::string_view, 4> kind_names{"vertex", "curve", "patch", "region"};
 
-/// The features of one dimension, each with the number of corners on it.
+/// The features of one dimension that a tet touches, each with the number of the tet's corners on it.
 class Touched {
  public:
   void add(Index feature) {

@@ -7,7 +7,7 @@ namespace collarmesh::checks {
 
 namespace {
 
-// The features of one dimension that list mesh points: for each point the feature, if there is exactly one.
+// The features of one dimension that each mesh point lies on: none, exactly one, or several.
 class FeatureOfPoint {
  public:
   explicit FeatureOfPoint(std::size_t points) : feature_(points, none), several_(points, false) {}

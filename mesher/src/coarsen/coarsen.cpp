@@ -41,9 +41,9 @@ constexpr double repaired_below = 0.65;
 // refinement half of these vertices have a shortest edge of 0.75 to 0.8, which can hardly ever be collapsed.
 constexpr double asked_inside_below = 0.75;
 constexpr unsigned most_sweeps = 8;
-// A pass that removes a smaller share of the tets ends its round. After such a round, if improvement before
-// it found nothing more and at least one in `collapses_per_repair` collapses needed repairs, all
-// vertices are tried again.
+// A pass that removes a smaller share of the tets ends its round. If a whole round removes a smaller share,
+// improvement before it found nothing more, and at least one in `collapses_per_repair` collapses needed
+// repairs, the next round tries all vertices again.
 constexpr double least_share = 0.005;
 constexpr std::size_t collapses_per_repair = 10;
 constexpr std::size_t steps_between_reports = 4096;
@@ -190,13 +190,13 @@ class Coarsening {
     }
   }
 
-  // Returns whether a vertex with an edge of this squared length is tried.
+  // Returns whether a vertex with an edge of this squared length in the metric is tried.
   bool is_asked(Index vertex, double length) const {
     const unsigned dimension = mesh().features[vertex].dimension;
     return dimension != 0 && (dimension < 3 || length < square(asked_inside_below));
   }
 
-  // Tries every vertex once. Returns whether another pass is worthwhile.
+  // Tries every candidate once. Returns whether another pass is worthwhile.
   bool collapse_all(bool repair) {
     const std::vector<Candidate> candidates = find_candidates(repair);
     last_pass_ = changes_.advance();
@@ -296,7 +296,7 @@ class Coarsening {
     return false;
   }
 
-  // Notes the corners of the faces of tets that a trial made: whether an edge of a patch may be turned also
+  // Notes the corners of the faces of tets that a trial made: whether an edge of a patch may be flipped also
   // depends on the faces around.
   void look_at_touched() {
     for (const Index t : touched_)
@@ -477,7 +477,7 @@ class Coarsening {
     touched_vertices_.clear();
   }
 
-  // Keeps the changes of a trial.
+  // Records the changes since `forget_touched`, which are kept.
   void settle() {
     changes_.advance();
     if (log_.size() > complex().size() / tets_per_logged_change) {
@@ -523,8 +523,8 @@ class Coarsening {
   };
   std::vector<Changed> log_;             // changes reported to `changes_` most recently
   std::uint32_t log_begins_ = 1;         // the time from which the log is complete
-  std::vector<Index> touched_;           // tets that were made or changed
-  std::vector<Index> touched_vertices_;  // vertices of removed tets
+  std::vector<Index> touched_;           // tets made or changed since `forget_touched`
+  std::vector<Index> touched_vertices_;  // vertices of tets removed since then
   std::vector<Index> examined_;          // corners of the tets that a trial tried to improve
   std::vector<Index> looked_at_;         // vertices whose tets the trials of one vertex examined
   std::vector<Index> star_;

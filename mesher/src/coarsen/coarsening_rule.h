@@ -19,8 +19,8 @@ class CoarseningRule final : public AngleRule {
             ///< largest one, nor tets that the bounds on cells forbid
   };
 
-  /// No operation makes an edge longer than this factor times the target length, unless the old edge was
-  /// longer.
+  /// No operation makes an edge longer than this factor times the target length, unless the edge that it
+  /// replaces was as long.
   static constexpr double longest_new = 1.5;
 
   /// Keeps references to the bounds and to the metric.

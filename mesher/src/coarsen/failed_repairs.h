@@ -21,8 +21,8 @@ class FailedRepairs {
     failures_.insert_or_assign(vertex, Failure{now, std::move(looked_at)});
   }
 
-  /// If nothing has changed at the vertices whose tets the trials examined, returns these vertices;
-  /// otherwise none.
+  /// Returns the vertices whose tets the failed trials examined, if nothing has changed there since.
+  /// Otherwise, and for a vertex without a record, returns none.
   std::span<const Index> still_fails(Index vertex, const ChangeTimes& changes) const {
     const auto found = failures_.find(vertex);
     if (found == failures_.end()) return {};

@@ -12,12 +12,12 @@ namespace collarmesh::remeshing::coarsening {
 
 /// The collapses of one vertex that the lengths of edges allow in the current mesh.
 struct VertexProposal {
-  Change change;  ///< a collapse that shapes allow, too, onto the nearest possible neighbour; or
-                  ///< none
+  Change change;  ///< a collapse that the shapes of tets allow, too, onto the nearest possible
+                  ///< neighbour; or none
   std::vector<Change> to_repair;  ///< collapses, at most one onto each neighbour, that leave tets to improve
-  double floor = 0;               ///< repairs may make no tet worse than this
-  /// The proposal depends on the tets at the vertex and at these vertices. Empty inside regions, where the
-  /// link condition is not checked.
+  double floor = 0;               ///< repairs must leave no changed tet worse than this
+  /// The proposal depends on the tets at the vertex and at these vertices. Empty for a vertex inside a
+  /// region, because there the link condition is not checked.
   std::vector<Index> read;
 };
 
@@ -41,8 +41,8 @@ class Proposer {
 
   /// Finds collapses of a vertex; if there is none, and `repairs` is set, collapses that need repairs.
   void collapses(Index vertex, bool repairs, VertexProposal& found);
-  /// Returns a change that makes a tet better: the removal of an edge (the longest one that makes it good
-  /// enough, or else the best one), or a move of a corner.
+  /// Returns a change that makes a tet better: the removal of an edge (the longest one whose removal leaves
+  /// good enough tets, or else the best one), or a move of a corner.
   Change improvement_of(Index tet, Mode mode);
 
  private:
@@ -77,7 +77,7 @@ class Proposer {
 /// Tets below this quality are improved between the passes, until they are above it.
 constexpr double improved_below = 1.3;
 
-/// Edges below this times the target length are collapsed.
+/// Edges shorter than this share of the target length are collapsed where possible.
 constexpr double collapsed_below = 0.8;
 constexpr bool is_short(double squared_length) { return squared_length < collapsed_below * collapsed_below; }
 

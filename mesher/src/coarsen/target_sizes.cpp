@@ -13,7 +13,7 @@ namespace collarmesh::remeshing::coarsening {
 
 namespace {
 
-// Growth per unit length of edges in meshes with a radius-edge ratio of at most 2, as observed.
+// Growth of edge lengths per unit of distance in meshes with a radius-edge ratio of at most 2, as observed.
 constexpr double natural_growth = 0.7;
 // Growth of sizes between the faces of a gap, as in the refinement.
 constexpr double growth_in_gaps = 0.25;
@@ -39,7 +39,7 @@ class TargetSizes {
  private:
   void see(Index vertex, double size) { sizes_[vertex] = std::min(sizes_[vertex], size); }
 
-  // Finds the region of each vertex. All tets at a vertex inside a region are in that region.
+  // Applies the sizes of regions to the vertices inside them. All tets at such a vertex are in its region.
   void see_regions() {
     std::vector<Index> region_of(mesh_.points.size(), none);
     for (Index t = 0; t < mesh_.tets.size(); ++t)

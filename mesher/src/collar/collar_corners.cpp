@@ -6,7 +6,7 @@ namespace collarmesh {
 
 namespace {
 
-// Points closer than this, relative to the radius, count as one: a circle that crosses the edge between two
+// Points closer than this, in radii of the circle, count as one: a circle that crosses the edge between two
 // triangles gives two points.
 constexpr double same_point = 1e-6;
 constexpr int most_projections = 40;
@@ -22,7 +22,7 @@ CollarCorners::CollarCorners(const Plc& plc, const FeatureHierarchy& features, c
                              const CreaseSheets& sheets, std::vector<CornerPoint>& corners)
     : plc_(plc), features_(features), paths_(paths), sheets_(sheets), corners_(corners) {}
 
-// Finds the places where the circle crosses triangles of the patch.
+// Returns the places where the circle crosses triangles of the patch.
 std::vector<Point> CollarCorners::crossings(Index patch, const Circle& circle) const {
   const Vector any = std::fabs(circle.axis.x) < 0.6 ? Vector{1, 0, 0} : Vector{0, 1, 0};
   const Vector across = cross(circle.axis, any), u = across / norm(across), v = cross(circle.axis, u);

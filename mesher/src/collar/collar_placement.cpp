@@ -18,7 +18,7 @@ namespace collarmesh {
 namespace {
 
 constexpr double radius_per_gap = 1 / gap_per_radius;
-// Features farther away than this many sizes do not affect the gap size.
+// Features farther away than this many sizes (CollarOptions::size) are ignored in the gap size.
 constexpr double gap_per_size = 4;
 // Radii are shrunk by a random share, at most this one, so that spheres are in general position.
 constexpr double largest_shrinkage = 0.02;
@@ -29,11 +29,12 @@ constexpr double radius_slope = 1.0 / 3;
 // curvature.
 constexpr double flat_radius_slope = 0.05;
 constexpr double sample_step = 0.5;  // distance of samples, in radii
-// Consecutive centres are at most this many radii apart. Then d^2 <= r1^2 + r2^2, even after shrinking: the
-// lines from a point of the two balls' circle to their centres meet at an angle of at most 90 degrees.
+// Consecutive centres are at most this many radii apart. Then their distance d has d^2 <= r1^2 + r2^2, even
+// after shrinking: the lines from a point of the two balls' circle to their centres meet at an angle of at
+// most 90 degrees.
 constexpr double step_per_radius = 1.2;
 // Mesh vertices nearer than this, in radii, to the previous centre or to the last one do not become centres.
-// Where a longer way than `step_per_radius` is divided into equal steps, these are at least as long, too.
+// Where more than `step_per_radius` is divided into equal steps, these are at least this long, too.
 constexpr double least_step_per_radius = step_per_radius / 2;
 
 // Lowers values until none exceeds a neighbour's by more than the slope allows, in both directions; goes
@@ -52,7 +53,7 @@ void limit_slope(const std::vector<double>& parameters, double slope, bool close
   }
 }
 
-// Interpolates linearly between samples at increasing positions `xs`.
+// Returns the value at x, interpolated linearly between the values `ys` at increasing positions `xs`.
 double interpolated(const std::vector<double>& xs, const std::vector<double>& ys, double x) {
   const auto after = static_cast<std::size_t>(std::upper_bound(xs.begin() + 1, xs.end() - 1, x) - xs.begin());
   const double width = xs[after] - xs[after - 1];
@@ -145,8 +146,8 @@ CollarPlacement::Profile CollarPlacement::make_profile(Index curve, double from,
     if (s >= to) break;
     require_room(flat.back(), paths_.point(curve, s));
     s = std::min(to, s + sample_step * flat.back());
-    // There are two samples per radius, and balls are 1.2 radii apart, so there are fewer than three samples
-    // per ball.
+    // There are two samples per radius, and balls are at most 1.2 radii apart, so there are fewer than three
+    // samples per ball.
     if (stopped(profile.parameters.size() / 3)) return {};
   }
   limit_slope(profile.parameters, radius_slope, closed, profile.radii);

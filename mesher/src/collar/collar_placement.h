@@ -21,7 +21,7 @@ class CollarPlacement {
   bool place_all();
   /// Places the ball at a vertex. Precondition: the vertex belongs to a crease and has no ball yet.
   void place_at_vertex(Index vertex);
-  /// Places the balls on a curve. They are centred on `vertices`, places of mesh vertices in their order
+  /// Places the balls on a curve. Some are centred on `vertices`, places of mesh vertices in their order
   /// along the curve, so that no centre lies just beside a vertex. Vertices too near to others are skipped.
   /// Preconditions: the curve is a crease and has no balls yet, and the vertices at its ends have their
   /// balls.

@@ -34,11 +34,11 @@ struct CollarLink {
   std::array<double, 2> parameters;  ///< arc lengths along the curve at the two centres
 };
 
-/// A point that the mesh must have for the collar surface to follow the features: where a patch meets a
-/// circle, or where a curve that is no crease leaves a vertex ball.
+/// A point that the mesh must have for the collar surface to follow the features: where a patch meets the
+/// circle of two consecutive balls or, around a crease vertex, the sphere of its ball.
 struct CornerPoint {
   Point point;
-  std::uint8_t dimension;  ///< 2: on a patch, 1: on a curve
+  std::uint8_t dimension;  ///< 2: on a patch
   Index feature;
 };
 
@@ -106,7 +106,7 @@ class CollarSystem {
   void balls_on_segment(const Point& p, const Point& q, std::vector<Index>& found) const;
 
  private:
-  /// Bounds of the balls of creases: a box for queries, and the exact box.
+  /// Bounds of the balls of the creases below a node: a box for queries, and the exact box.
   struct OfCreases {
     CentredBox centred = CentredBox::empty();
     Box box;

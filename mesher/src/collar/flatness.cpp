@@ -119,8 +119,8 @@ double Flatness::other_arcs(Index curve, double parameter, double reach) const {
 }
 
 // Returns the distance, up to `reach`, to other sheets of the patch: to triangles that are not connected, by
-// triangles inside the ball B(centre, reach), to those with the given points (at a vertex, the same point
-// twice).
+// triangles that meet the ball B(centre, reach), to the triangles with both given points (at a vertex, the
+// same point twice).
 double Flatness::other_sheets(Index patch, const Point& centre, double reach,
                               const std::array<Index, 2>& points) const {
   struct Side {

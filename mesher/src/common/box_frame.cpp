@@ -14,9 +14,9 @@ void for_each_edge(std::span<const Point> points, Triangles triangles, const Vis
     for (unsigned i = 0; i < 3; ++i) visit(points[t[(i + 1) % 3]] - points[t[i]]);
 }
 
-/// Returns the main direction of the edges; if `across` is not zero, of their parts orthogonal to this unit
-/// vector. Starts with the direction of the longest edge; each step turns it towards the directions of the
-/// other edges.
+/// Returns the main direction of the edges or, if the unit vector `across` is not zero, of their components
+/// orthogonal to it; zero if all these are zero. Starts with the direction of the longest edge; each step
+/// turns it towards the directions of the other edges.
 Vector main_direction(std::span<const Point> points, Triangles triangles, const Vector& across) {
   constexpr unsigned steps = 3;
   const auto part_of = [&](const Vector& edge) { return edge - dot(edge, across) * across; };
@@ -49,7 +49,8 @@ double area_of_boxes(std::span<const Point> points, Triangles triangles, const B
 }  // namespace
 
 BoxFrame::BoxFrame(std::span<const Point> points, Triangles triangles) {
-  constexpr double worthwhile = 1. / 8;  // largest ratio of the areas of turned and unturned boxes
+  constexpr double worthwhile = 1. / 8;  // the frame is turned if this makes the boxes' total area
+                                         // smaller than this share of what it was
   constexpr double roundings = 32;
   BoxFrame turned;
   Box bounds;

@@ -7,20 +7,20 @@
 
 namespace collarmesh {
 
-/// Axes along which the boxes of triangles are small: the coordinate axes, or, if most triangles are long and
-/// parallel to none of these, the axes of the triangles. With the coordinate axes, millions of boxes of
-/// parallel needles would overlap.
+/// Axes along which the boxes of triangles are small: the coordinate axes or, if boxes along these would be
+/// much larger, the main directions of the triangles' edges. The boxes of millions of parallel needles would
+/// overlap if they were along coordinate axes.
 class BoxFrame {
  public:
   /// Makes a frame of the coordinate axes.
   BoxFrame() = default;
-  /// Makes a frame for these triangles. Cost: O(n).
+  /// Makes a frame for these triangles. Cost: O(n) for n triangles.
   BoxFrame(std::span<const Point> points, std::span<const std::array<Index, 3>> triangles);
 
   bool turned() const { return turned_; }
 
-  /// Extends the box by all points within `reach` of a point along each axis, with a margin for rounding
-  /// errors.
+  /// Extends a box along the frame's axes by the points whose distance from p along each axis is at most
+  /// `reach`, and by a margin for rounding errors.
   void add(Box& box, const Point& p, double reach = 0) const {
     const Point q =
         turned_ ? Point{dot(axes_[0], p - origin_), dot(axes_[1], p - origin_), dot(axes_[2], p - origin_)}

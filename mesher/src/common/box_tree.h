@@ -12,7 +12,7 @@ namespace collarmesh {
 class BoxTree {
  public:
   /// Builds the tree. Items may belong to groups, numbered in any way; without groups each item is a group.
-  /// Cost: O(n).
+  /// Cost: O(n) for n items.
   explicit BoxTree(std::span<const Box> boxes, std::span<const Index> groups = {});
 
   /// Calls visit(i, j) once for every pair of items of different groups whose boxes meet.

@@ -17,8 +17,8 @@ inline constexpr std::size_t most_nodes_of_cell = 15;
 
 /// Positions of the ends of an edge among the corners of its cell.
 using EdgePlaces = std::array<std::uint8_t, 2>;
-/// Positions of the corners of a side among the corners of its cell, counterclockwise as seen from outside. A
-/// triangle has three.
+/// Positions of the corners of a side among the corners of its cell, counterclockwise as seen from outside.
+/// For a triangle the fourth one has no meaning.
 struct SidePlaces {
   std::size_t corners;
   std::array<std::uint8_t, 4> places;
@@ -26,7 +26,7 @@ struct SidePlaces {
 
 namespace cell_shapes {
 inline constexpr std::array<EdgePlaces, 6> tet_edges{{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
-/// The edges of a tet with the lower corner first, in the order of the corners.
+/// The edges of a tet in lexicographic order, the corner with the lower position first.
 inline constexpr std::array<EdgePlaces, 6> corner_pairs{{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
 inline constexpr std::array<EdgePlaces, 9> prism_edges{
     {{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}}};

@@ -20,8 +20,8 @@ class DistanceTree {
     double distance;
     Index triangle;  ///< number of the triangle in the constructor's list; none if there are no triangles
   };
-  /// Finds the triangle nearest to p. Ends early once a triangle as near as `enough` is found. A `hint`, a
-  /// triangle that is probably near, makes the search faster.
+  /// Finds the triangle nearest to p, or any triangle at most `enough` away, which ends the search early. A
+  /// `hint`, a triangle that is probably near, makes the search faster.
   Nearest nearest(const Point& p, double enough = 0, Index hint = none) const;
 
  private:

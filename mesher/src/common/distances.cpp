@@ -43,8 +43,8 @@ double squared_distance_to_segment(const Point& p, const Point& a, const Point& 
   return squared_distance(p, nearest_point_on_segment(p, a, b));
 }
 
-// Most points are far from the triangle's plane, or above or below the triangle. Any other point is beyond a
-// side of the triangle, and its nearest point lies on such a side.
+// First tests the distance from the plane, which decides for most points, and whether the point projects into
+// the triangle. If it does not, the nearest point lies on one of the sides beyond which it is.
 bool is_within(double squared_bound, const Point& p, const Point& a, const Point& b, const Point& c) {
   const Vector u = b - a, w = c - a, n = cross(u, w);
   const double nn = squared_norm(n), longest = std::max(squared_norm(u), squared_norm(w));

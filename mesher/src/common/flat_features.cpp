@@ -12,10 +12,10 @@ namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double infinite = std::numeric_limits<double>::infinity();
-// Limit on the rounds in which a place on a curve between several planar patches is moved to one plane after
-// the other. Few are enough: the planes nearly coincide, or meet in the curve.
+// The maximum number of rounds in which a place on a curve is moved back to the curve and then to the plane
+// of each of its patches. Few are enough: the planes nearly coincide, or meet in the curve.
 constexpr int most_turns = 20;
-// Points are pulled back to this share of the tolerance, so that rounding cannot leave them outside.
+// Places are moved back to this share of the limit, so that rounding cannot leave them beyond it.
 constexpr double inside = 0.99;
 
 Point nearest_on_chain(const std::vector<Point>& points, const std::vector<Index>& chain, const Point& p) {
@@ -80,7 +80,7 @@ std::optional<Point> FlatFeatures::keep(unsigned dimension, Index feature, Point
   return std::nullopt;
 }
 
-// Moves a place back if it is too far from a straight curve. Returns whether it moved the place.
+// Moves a place back if it is too far from a straight curve's polyline. Returns whether it moved the place.
 bool FlatFeatures::put_on_curve(Index curve, Point& p) const {
   if (curve_room_[curve] == infinite) return false;
   const Point q = nearest_on_chain(plc_.points, plc_.curves[curve].points, p);

@@ -9,22 +9,25 @@
 namespace collarmesh {
 
 /// The limits that keep straight curves and planar patches flat when their nodes move onto exact geometry.
-/// The exact geometry may deviate from the line or plane by the tolerance of the shape, which can be more
-/// than the tessellation's points do.
+/// The exact geometry may deviate from the line or plane by the tolerance of the CAD shape, which can be more
+/// than the deviation of the tessellation's points.
 class FlatFeatures {
  public:
   /// Keeps a reference to the complex. Cost: linear in the triangles.
   explicit FlatFeatures(const Plc& plc);
 
-  /// Returns the exact geometry with its places kept near straight curves and planar patches. Places that are
-  /// farther from a plane than the certificate permits are moved back to the limit, which is min(4 d, planar
-  /// tolerance) plus rounding, where d is the distance of the complex's own points from the plane. For a
-  /// straight curve the limit is half of that, because the edges between nodes must also be near the curve's
-  /// own points, which are up to 2 d off the chords. Returns no point if it finds no such place. Keeps
-  /// references to this object and to `exact`.
+  /// Returns the exact geometry with its places kept near straight curves and planar patches: a place beyond
+  /// a limit is moved back to it. For a planar patch the limit is the distance from its plane that the
+  /// certificate permits: min(4 d, planar tolerance) + rounding, where d is the largest distance of the
+  /// patch's points from the plane. For a straight curve it is the distance min(4 d, planar tolerance) / 2 +
+  /// rounding from the curve's polyline, where d is the largest distance of the polyline's points from the
+  /// line between its ends. (Only half, because mesh edges must also be near the polyline's points, which can
+  /// be 2 d off a chord.) The result gives no point where `exact` gives none, or if on a curve no place
+  /// within all limits is found. Keeps references to this object and to `exact`.
   ExactGeometry limit(const ExactGeometry& exact) const;
 
-  /// Applies this restriction to one place on the exact geometry of a curve (dimension 1) or patch (2).
+  /// Applies the limits to one place on the exact geometry of a curve (dimension 1) or patch (2). Returns
+  /// nothing if it finds no place within all of them.
   std::optional<Point> keep(unsigned dimension, Index feature, Point place) const;
 
  private:
@@ -32,7 +35,7 @@ class FlatFeatures {
   bool put_on_plane(Index patch, Point& p) const;
 
   const Plc& plc_;
-  // Limits on the distance from the line or plane, absolute; infinite for features that are not flat.
+  // Limits on the distance from the polyline or plane, absolute; infinite for features that are not flat.
   std::vector<double> curve_room_, patch_room_;
 };
 

@@ -15,7 +15,7 @@ namespace collarmesh {
 /// Returns a number whose lower 32 bits depend on all bits of the key.
 inline std::uint64_t spread(std::uint64_t key) { return key * split_mix_step >> 32U; }
 
-/// Returns a hash of whole numbers in their order.
+/// Returns a hash of a sequence of whole numbers; it depends on their order.
 template <class Numbers>
 std::uint64_t hash_of(const Numbers& numbers) {
   std::uint64_t hash = 0;

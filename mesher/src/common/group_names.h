@@ -7,7 +7,7 @@
 #include "collarmesh/geometry.h"
 #include "collarmesh/tet_mesh.h"
 
-/// Names of groups of cells: a prefix by dimension, followed by the tag.
+/// Names of groups of cells: a given name, or a prefix by dimension and the tag.
 namespace collarmesh {
 
 constexpr std::array<std::string_view, 4> group_name_prefix{"vertex_", "curve_", "patch_", "region_"};
@@ -17,8 +17,8 @@ constexpr std::array<std::string_view, 4> cad_name_prefix{"Vertex", "Edge", "Fac
 /// formats do not allow in names: "patch_minus_7".
 std::string group_name(GroupNames names, std::size_t dimension, Tag tag, std::string_view minus = "minus_");
 
-/// Returns the name that the tag was given, with `_` for quotes and control characters; otherwise the name by
-/// kind and tag.
+/// Returns the name that the tag was given, with `_` for quotes and control characters; without such a name,
+/// the one made of dimension and tag.
 std::string group_name(const TetMesh& mesh, std::size_t dimension, Tag tag,
                        std::string_view minus = "minus_");
 

@@ -15,8 +15,8 @@ namespace collarmesh {
 /// Sizes for sorting items by group in two steps: chunks of items are first dealt to ranges of groups, so
 /// that the remaining work fits a processor's cache.
 struct Dealing {
-  std::size_t chunk;   ///< items dealt by one thread
-  std::size_t range;   ///< groups that are sorted at once
+  std::size_t chunk;   ///< number of items that one thread deals at a time
+  std::size_t range;   ///< number of groups that one thread sorts at a time
   std::size_t chunks;  ///< number of chunks
   std::size_t ranges;  ///< number of ranges
 
@@ -92,8 +92,8 @@ void for_each_group(std::size_t groups, std::size_t count, const Visit& visit, c
       place);
 }
 
-/// Returns all numbers below `count` ordered by group (numbers below `groups`), and within a group in their
-/// own order. Calls `group_of(i)` several times, from several threads at once. Cost: linear.
+/// Returns all i below `count`, ordered by their group `group_of(i)`, a number below `groups`; those of one
+/// group ascending. Calls `group_of(i)` several times, from several threads at once. Cost: linear.
 template <class GroupOf>
 std::vector<Index> order_by_group(std::size_t groups, std::size_t count, const GroupOf& group_of,
                                   const recorded_costs::Place& place = {__builtin_FILE(), __builtin_LINE()}) {

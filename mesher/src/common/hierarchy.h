@@ -19,7 +19,7 @@ namespace collarmesh {
 enum class ChildOrder { left_first, right_first };
 
 /// A binary tree over a sequence of items. Every node has bounds of the items below it, which let searches
-/// skip the node. The classes that search decide what items and bounds are.
+/// skip the node. Its users define items and bounds.
 template <class Bounds>
 class Hierarchy {
  public:
@@ -53,8 +53,8 @@ class Hierarchy {
 
   /// Adds a tree over `count` items, at least one, from `first` on. Its root is the next node. Leaves have at
   /// most `leaf_size` items. `split(first, count)` returns how many of these items go to the left child; it
-  /// may reorder them. `leaf(first, count)` returns bounds of items, and `join(bounds, bounds)` those of two
-  /// sets of items; both are converted to `Bounds`. Returns the bounds of all items.
+  /// may reorder them. `leaf(first, count)` returns the bounds of these items, and `join(bounds, bounds)`
+  /// those of two sets together; both are converted to `Bounds`. Returns the bounds of all items.
   template <class Split, class Leaf, class Join>
   auto add(Index first, Index count, Index leaf_size, const Split& split, const Leaf& leaf, const Join& join)
       -> std::invoke_result_t<const Leaf&, Index, Index> {
@@ -125,8 +125,8 @@ class Hierarchy {
         [&](Index item, bool) { return visit(item); });
   }
 
-  /// Visits the items of leaves below a node, near nodes first, as long as `distance(node)` is below the
-  /// bound, which `visit` may lower. `ties` tells which of two equally near children comes first.
+  /// Visits the items of leaves below a node, near nodes first. Skips nodes whose `distance(node)` is not
+  /// below `bound`, which `visit` may lower. `ties` tells which of two equally near children comes first.
   template <ChildOrder ties = ChildOrder::right_first, class Distance, class Visit>
   void visit_near(Index start, const double& bound, const Distance& distance, const Visit& visit) const {
     struct Waiting {
@@ -171,13 +171,13 @@ inline bool boxes_meet(const Box& a, const Box& b) {
          a.min.z <= b.max.z && b.min.z <= a.max.z;
 }
 
-/// Returns a function for Hierarchy::add that splits items in spatial order.
+/// Returns a `split` for Hierarchy::add, for items that are in spatial order.
 inline auto spatial_splits(std::span<const SpatialKey> keys) {
   return [keys](Index first, Index count) { return spatial_split(keys.subspan(first, count)); };
 }
 
-/// Returns a function for Hierarchy::add that halves items along the longest side of the box of their
-/// centres, by reordering them.
+/// Returns a `split` for Hierarchy::add that halves items along the longest side of the box of their centres.
+/// It reorders the items.
 template <class Item, class CentreOf>
 auto median_splits(std::span<Item> items, const CentreOf& centre_of) {
   return [items, &centre_of](Index first, Index count) {

@@ -6,7 +6,7 @@ namespace collarmesh {
 
 namespace {
 
-/// The three derivatives of the shape functions at a point.
+/// The derivatives of n shape functions at a point, by each of the three coordinates.
 template <std::size_t n>
 using Derivatives = std::array<std::array<double, n>, 3>;
 
@@ -18,7 +18,7 @@ double jacobian(const std::array<Point, n>& nodes, const Derivatives<n>& derivat
   return dot(cross(tangents[0], tangents[1]), tangents[2]);
 }
 
-/// A value with its derivatives by three coordinates.
+/// A value with its derivatives by each of the three coordinates.
 struct Dual {
   double value = 0;
   Vector slope{};

@@ -5,7 +5,8 @@
 
 namespace collarmesh {
 
-/// Returns the median: the upper one for an even number of values, 0 for none. Reorders the values.
+/// Returns the median: the upper one of the two in the middle if the number of values is even; 0 if there are
+/// no values. Reorders the values.
 inline double median(std::vector<double>& values) {
   if (values.empty()) return 0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

@@ -6,7 +6,7 @@
 
 namespace collarmesh {
 
-/// Keeps in `last` the largest item noted there, or none. Several threads may call it at once unless `alone`.
+/// Raises `last` to `item` if `last` is smaller, or none. Several threads may call it at once unless `alone`.
 inline void note_last(Index& last, Index item, bool alone) {
   if (alone) {
     if (last == none || last < item) last = item;

@@ -23,8 +23,8 @@ class PatchDistance {
   /// A sample point on the faces or on the patch, compared with the nearest place on the other of the two.
   struct Sample {
     const Point& place;
-    Index face;        ///< face that the sample lies on; for a sample on the patch, the face nearest to it
-    double distance;   ///< exact if above `enough`, else an upper bound
+    Index face;        ///< face that the sample lies on; for a sample on the patch, the nearest face found
+    double distance;   ///< exact if above `enough` (see `visit`), else an upper bound
     double tolerance;  ///< tolerance at the sample
   };
 
@@ -40,8 +40,8 @@ class PatchDistance {
         patch_points_(patch_points) {}
 
   /// Visits the samples: the corners and centres of the faces, two points on each of their sides, and the
-  /// corners and centres of the patch's triangles. `enough` returns the distance above which exact distances
-  /// are needed.
+  /// corners and centres of the patch's triangles. `enough()` returns the distance above which a sample's
+  /// distance must be exact. Calls `look(sample, on_face)` for each.
   void visit(const auto& enough, const auto& look) const {
     visit_faces(enough, look);
     visit_patch(enough, look);

@@ -26,7 +26,8 @@ double now() {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-/// Returns the time at which the last piece is done if each worker takes the next piece once it is free.
+/// Returns the time at which the last piece is done if each of `count` workers takes the next piece once it
+/// is free.
 double makespan(const std::vector<double>& costs, std::size_t count) {
   std::priority_queue<double, std::vector<double>, std::greater<>> free_at;
   double end = 0;

@@ -7,8 +7,8 @@
 
 namespace collarmesh {
 
-/// Records the costs of everything between and inside parallel parts, so that developers can estimate the
-/// gain from more threads on a machine with few cores. With COLLARMESH_RECORD_COSTS=FILE in the environment
+/// Records the costs of everything between and inside parallel parts, so that developers whose machine has
+/// few cores can estimate the gain from more threads. With COLLARMESH_RECORD_COSTS=FILE in the environment
 /// the program runs on one thread, but divides the work as for `--threads` threads (COLLARMESH_CORES allows
 /// more than the machine has). At the end of the program FILE gets a table of CPU seconds by stage and place,
 /// which bench/schedule.py reads.

@@ -39,7 +39,7 @@ bool keep_mode_and_owner(const fs::path& before, const fs::path& staged) {
   return chmod(staged.c_str(), status.st_mode & 07777) == 0;
 }
 
-/// Makes a second name for a file or, if links are not supported, moves it away.
+/// Gives a file the second name `kept` (a hard link) or, if links are not supported, moves it there.
 bool keep(const fs::path& place, const fs::path& kept) {
   return link(place.c_str(), kept.c_str()) == 0 || rename(place.c_str(), kept.c_str()) == 0;
 }

@@ -22,13 +22,13 @@ class Replacement {
   /// Gives each new file the mode and, where permitted, the owner of the file that it replaces, and flushes
   /// it to the disk. Throws WriteError.
   void prepare() const;
-  /// Moves the files to their places; returns null. If a move fails, returns it, with the reason in `errno`;
-  /// then the moves before it have to be undone. Allocates nothing.
+  /// Moves the files to their places. Returns null or, if a move fails, that move, with the reason in
+  /// `errno`; the caller must then undo the moves before it. Allocates nothing.
   const Move* carry_out();
   /// Undoes the completed moves, also those of a `carry_out` that has not returned. Returns whether all
   /// previous files are back in their places. Allocates nothing.
   bool undo() noexcept;
-  /// Makes completed moves final: they are not undone any more. Flushes their folders, too.
+  /// Makes completed moves final, so that `undo` no longer undoes them. Flushes their folders, too.
   void settle();
 
  private:

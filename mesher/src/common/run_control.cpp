@@ -11,7 +11,7 @@
 
 namespace collarmesh {
 
-/// A flag that becomes true when another flag is set or the deadline has passed.
+/// A flag that becomes true when the execution's own flag is set or the deadline has passed.
 class RunControl::Watch {
  public:
   Watch(Deadline deadline, const Execution& execution)

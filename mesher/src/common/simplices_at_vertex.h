@@ -104,9 +104,9 @@ class FittingTetsAtVertex : public EdgesAtVertex {
     fit_ &= take_counts();
   }
 
-  /// Looks at the triangles in which the vertex has the smallest number. Returns whether each of them is a
-  /// side of two tets of one region, one on either side, and is not a listed face. Returns false without a
-  /// check if the vertex has more than 32 edges.
+  /// Returns whether each triangle in which the vertex has the smallest number is a side of two tets of one
+  /// region, one on either side, and is not a listed face. Also returns false if more than 32 edges, or 256
+  /// cells or more, were found: these are too many to count.
   bool fit() const { return fit_; }
 
  private:
@@ -140,7 +140,7 @@ class FittingTetsAtVertex : public EdgesAtVertex {
   bool fit_ = false;
 };
 
-/// A side of a tet, or a listed face, by the numbers of its corners.
+/// The use of a triangle by a cell: as a side of a tet, or as a listed face.
 struct TriangleUse {
   static constexpr std::uint8_t listed_face = 4;
 
@@ -217,7 +217,7 @@ class TrianglesAtVertex {
     table_.assign(std::bit_ceil(std::max(least_slots, 2 * most_uses)), none);
   }
 
-  // The order of corners is unpredictable, so as few branches as possible depend on it.
+  // As few branches as possible depend on the order of the corners, which processors cannot predict.
   void add_sides(const std::array<Index, 4>& tet, Index cell, Index vertex) {
     const auto& places = opposite_places[place_of(vertex, tet)];
     for (unsigned i = 0; i < 3; ++i) {

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double cells_per_axis = 1 << 21;
 
-// Returns the lower 21 bits of n with two zero bits before each.
+// Returns the lower 21 bits of n, spread so that two zero bits come before each.
 std::uint64_t spread_bits(std::uint64_t n) {
   n = (n | n << 32) & 0x001f00000000ffff;
   n = (n | n << 16) & 0x001f0000ff0000ff;

@@ -23,9 +23,9 @@ std::vector<SpatialKey> spatial_order(std::span<const Point> points);
 /// Orders points like spatial_order, with the threads of the caller's arena.
 std::vector<SpatialKey> spatial_order_by_all_threads(std::span<const Point> points);
 
-/// Returns the item at which a hierarchy over ordered items splits them: the first one in the upper half of
-/// the smallest octree cell that holds them all, or the middle one if all are at one place. Precondition:
-/// there are at least two items.
+/// Returns the position at which a hierarchy over items in spatial order splits them: the first one in the
+/// upper half of the smallest octree cell that holds them all, or the middle one if all are at one place.
+/// Precondition: there are at least two items.
 std::size_t spatial_split(std::span<const SpatialKey> keys);
 
 /// The maximum depth of a hierarchy made by `spatial_split`.

@@ -9,7 +9,7 @@
 namespace collarmesh {
 
 /// A limit on the threads of parallel parts: the work that `run` calls uses at most this number, and never
-/// more than there are cores. 0 stands for all cores, or as many threads as the system allows.
+/// more than there are cores or the system allows. 0: no further limit.
 class ThreadLimit {
  public:
   explicit ThreadLimit(unsigned threads)

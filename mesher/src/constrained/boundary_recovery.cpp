@@ -21,15 +21,16 @@ constexpr double most_errors = 512;  // rounding errors by which a point may be 
 // Largest and smallest distance from a flat tetrahedron at which a point beside it is tried, relative to the
 // longest side of the crossed face.
 constexpr double farthest_room = 0.1, nearest_room = 1e-6;
-// After this many triangulated rings for one edge or facet, an edge is removed without removing others first.
+// After this many triangulated rings for one missing edge or facet, edges are removed only if no other edge
+// has to be removed first.
 constexpr std::size_t most_rings = 1000;
 // Limit of added points: `most_times` times the number of points of the complex, plus `some`.
 constexpr std::size_t most_times = 20, some = 1000;
 
 bool same_sign(int a, int b, int c) { return (a >= 0 && b >= 0 && c >= 0) || (a <= 0 && b <= 0 && c <= 0); }
 
-/// Returns whether the line from one vertex to another passes through a triangle, or its border, from side to
-/// side.
+/// Returns whether the line from one vertex to another passes from one side of a triangle to the other,
+/// through its interior or its border.
 bool crosses(const Tetrahedra& mesh, Index from, Index to, const std::array<Index, 3>& triangle) {
   const auto& [a, b, c] = triangle;
   return mesh.orientation(a, b, c, from) * mesh.orientation(a, b, c, to) < 0 &&
@@ -81,8 +82,8 @@ double angle(const Point& a, const Point& at, const Point& b) {
 }
 
 /// Returns whether the line cd separates a from b. Precondition: all four points lie in one plane. Exact:
-/// decides in the projection along the axis nearest to the normal, or in the next projection if that one maps
-/// all points to a line.
+/// decides in the projection along the axis nearest to the normal or, if this maps all points to a line,
+/// along the next axis.
 bool parts(const Point& c, const Point& d, const Point& a, const Point& b) {
   const Vector normal = cross(d - c, a - c);
   std::array<unsigned, 3> axes{0, 1, 2};
@@ -139,8 +140,8 @@ void BoundaryRecovery::make_planar_facets_delaunay() {
   std::erase_if(edges_to_do_, [&](const EdgeToDo& e) { return !required_.contains(edge_key(e.a, e.b)); });
 }
 
-/// Flips an edge between two facets in one plane if the sum of the angles opposite it is large enough, and
-/// adds the edges around it to the changed ones.
+/// Flips an edge between two facets in one plane if the sum of the angles opposite it is at least
+/// `least_angles` (radians). Then adds the four edges around it to `changed`.
 bool BoundaryRecovery::turn_edge(std::uint64_t key, double least_angles,
                                  std::vector<std::uint64_t>& changed) {
   const auto at = edges_.find(key);
@@ -243,7 +244,8 @@ bool BoundaryRecovery::reduce(const std::function<std::optional<int>()>& change)
   return false;
 }
 
-/// Recovers an edge, or divides it. Edges that need more changes wait until the others are done.
+/// Recovers an edge, or divides it. If changes to this depth do not suffice, the edge waits until the others
+/// are done.
 void BoundaryRecovery::recover_edge(const EdgeToDo& edge) {
   const auto [a, b, depth] = edge;
   const InTheWayOfEdge obstacles(mesh_, a, b);

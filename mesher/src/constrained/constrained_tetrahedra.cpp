@@ -159,7 +159,7 @@ class Extraction {
   std::vector<Index> number_;
 };
 
-/// Makes the tetrahedra in one way. Returns none if the run was cancelled.
+/// Makes the tetrahedra in one way. Returns an empty mesh if the run was cancelled.
 ConstrainedTetrahedra recovered(const Plc& plc, const RecoveryWay& way, const Execution& execution) {
   Tetrahedra mesh(plc.points);
   BoundaryRecovery recovery(mesh, plc, way);

@@ -114,8 +114,8 @@ class Ladders {
     return is_smooth(triangle) && shortest <= long_edge * size_ && middle > long_edge * size_ &&
            middle > narrow * shortest;
   }
-  /// Returns whether most of the surface is made of needles. Ladders on a small part of it cure little, and
-  /// the attempt costs time.
+  /// Returns whether most of the surface is made of needles. Ladders on a small part of the surface help
+  /// little, and the attempt costs time.
   bool needles_prevail() const {
     constexpr double least_share = 0.5;
     double all = 0, needles = 0;

@@ -31,9 +31,9 @@ class LocalChanges {
 
   /// Replaces the two tetrahedra at a face by three at the edge that joins the corners beyond it.
   std::optional<int> remove_face(const Tetrahedra::Face& face, const Obstacles& obstacles);
-  /// Triangulates the ring of an edge again, with the fewest obstacles. If every triangulation makes a
-  /// tetrahedron without positive volume, or adds more than `most` obstacles, removes other edges around this
-  /// edge first, recursively to this depth.
+  /// Removes an edge by the triangulation of its ring that has the fewest obstacles. If every triangulation
+  /// makes a tetrahedron without positive volume, or adds more than `most` obstacles, removes other edges
+  /// around this edge first, recursively to this depth.
   std::optional<int> remove_edge(Index a, Index b, unsigned depth, const Obstacles& obstacles, int most);
 
   /// Sets the number of further triangulated rings after which `remove_edge` no longer removes other edges

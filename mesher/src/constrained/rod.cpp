@@ -13,25 +13,25 @@ namespace {
 constexpr double full_turn = 2 * std::numbers::pi;
 // The largest radius of a rod, as a share of the size, and its least length, in radii.
 constexpr double thinner_than_size = 0.5, least_length = 8;
-// Ratio of the largest to the smallest distance of the patch from the axis in one section.
+// Largest permitted ratio of the largest to the smallest distance of the patch from the axis in one section.
 constexpr double roundest = 1.25;
-// Rings are at most this many radii apart: then the angle between the two tets that share the chord of a ring
-// and a piece of the axis is below 150 degrees.
+// Rings are at most this many radii apart. Then a tet between the chord of a ring and a piece of the axis has
+// a dihedral angle below 150 degrees at the chord.
 constexpr double apart = 6.2;
 // Share of the tolerance for chords around the rod.
 constexpr double share_around = 0.75;
 constexpr std::size_t fewest_in_ring = 8, most_in_ring = 24;
-// The smallest angle of tets, a little above the bound on thin tets, degrees.
+// The smallest permitted dihedral angle of tets, degrees: a little above the bound for thin tets.
 constexpr double least_angle = 8.2;
-// Largest measured distance of the patch from chords around a straight rod, and around a bent one, as a share
-// of the tolerance.
+// Largest permitted distance of the patch from chords, as measured, around a straight rod and around a bent
+// one, as a share of the tolerance.
 constexpr double share_measured = 0.95, share_measured_of_bent = 0.6;
 constexpr std::size_t rays_of_section = 16, most_sections = 200'000, fewest_rings_of_loop = 8;
 constexpr double step_in_radii = 1, rays_per_radius = 8;
 
-/// Returns the largest distance of rings with this many vertices, in radii. The smallest angle is that at an
-/// edge from the axis to a ring, between the plane that contains the axis and the plane through the next
-/// vertex of the ring.
+/// Returns the largest permitted distance between neighbouring rings with this many vertices, in radii of the
+/// rod. The smallest angle of the tets is that at an edge from the axis to a ring, between the plane that
+/// contains the axis and the plane through the next vertex of the ring.
 double largest_spacing(std::size_t in_ring) {
   const double chord = 2 * std::sin(std::numbers::pi / static_cast<double>(in_ring)),
                slope = std::tan(least_angle * std::numbers::pi / 180) / chord, rest = slope * slope - 0.25;
@@ -132,7 +132,7 @@ bool Rod::is_thick() {
   return radius_ > thinner_than_size * size_ || length_ < least_length * radius_;
 }
 
-/// Returns the nearest point of the patch in a direction.
+/// Returns the point of the patch nearest to `from` in a direction, within the length of rays.
 Rod::Hit Rod::hit(const Point& from, const Vector& way) const {
   const Index root = hierarchy_->root();
   Hit nearest;
@@ -147,7 +147,8 @@ Rod::Hit Rod::hit(const Point& from, const Vector& way) const {
   return nearest;
 }
 
-/// Moves a place to the centre of its section, and measures the section. Returns whether it is round.
+/// Moves a place to the centre of its section, and measures the section. Returns whether the section is
+/// round.
 bool Rod::measure(RodSection& section) const {
   constexpr unsigned rounds = 3;
   if (section.across == Vector{}) section.across = any_across(section.along);
@@ -281,7 +282,8 @@ bool Rod::finish_loop() {
   return sections_.size() > fewest_rings_of_loop && set_directions();
 }
 
-/// Sets the directions of the axis, and turns frames as little as possible from one to the next.
+/// Sets the directions of the axis, and turns frames as little as possible from one to the next. Returns
+/// false if the axis meets an end at a slant.
 bool Rod::set_directions() {
   constexpr double least_cosine_at_ends = 0.98;
   const std::size_t last = sections_.size() - 1;
@@ -381,7 +383,7 @@ bool Rod::chords_keep_tolerance() const {
   return true;
 }
 
-/// Returns the place after this share of the rings.
+/// Returns the section at this share of the number of rings, between 0 and 1.
 RodSection Rod::at_share(double share) const {
   const double rings = share * sections_.back().rings;
   const auto found = std::ranges::lower_bound(sections_, rings, {}, &RodSection::rings);

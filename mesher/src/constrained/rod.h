@@ -17,8 +17,8 @@ struct RodSection {
   Point centre;
   Vector along, across;
   double radius = 0, tolerance = 0;
-  double spacing = 0;  ///< the distance of rings
-  double rings = 0;    ///< the number of rings up to here
+  double spacing = 0;  ///< the largest distance between neighbouring rings here
+  double rings = 0;    ///< the number of rings from the first section to this one, not rounded
 
   /// Returns the direction at an angle from `across`, around the axis.
   Vector turned(double angle) const;
@@ -50,12 +50,13 @@ class Rod {
   /// Changes the number of vertices in a ring. Returns whether it is not too large.
   bool set_in_ring(std::size_t vertices);
   /// Finds how far apart rings are, after `find_vertices_around`: at most this many radii, and so near that
-  /// edges along a bent axis take at most this share of the tolerance. The number of steps from ring to ring
+  /// edges along a bent axis use at most this share of the tolerance. The number of steps from ring to ring
   /// is a multiple of `times`.
   void find_spacing(double most_radii = INFINITY, double share_along = 0.1, std::size_t times = 1);
   /// Finds the vertices of all rings. If a pattern around the rod looks the same after each of
-  /// `parts_of_turn` parts of a turn, the rings of a closed rod are turned so that the pattern fits where the
-  /// rod closes. Returns whether all were found, including the vertices of the complex at the ends.
+  /// `parts_of_turn` parts of a turn (0: as many parts as a ring has vertices), the rings of a closed rod are
+  /// turned so that the pattern fits where the rod closes. Returns whether all were found, including the
+  /// vertices of the complex at the ends.
   bool find_rings(std::size_t parts_of_turn);
 
   /// Returns whether the faces between rings are as near to the patch as the tolerance asks.

@@ -96,7 +96,8 @@ class Filling {
   Index first_;
 };
 
-/// Returns the patches of each region; nothing if two regions meet or the complex has other features.
+/// Returns the patches of each region; nothing unless each patch lies between a region and the outside, and
+/// each curve and vertex on a patch.
 std::optional<std::vector<std::vector<Index>>> patches_of_bodies(const Plc& plc) {
   std::vector<std::vector<Index>> bodies(plc.regions.size());
   for (Index p = 0; p < plc.patches.size(); ++p) {

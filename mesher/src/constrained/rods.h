@@ -20,8 +20,8 @@ struct RodLimits {
 /// nothing for other complexes, and if no ring of vertices around a rod keeps the tolerance. Rings of
 /// vertices lie on the patch, some radii apart but not farther than the size, with a vertex on the axis
 /// between neighbouring rings. This takes few tets, which have good angles. Rods are thin if their radius is
-/// less than half of the size. Returns nothing, too, if there would be too many vertices or if cancelled.
-/// Cost: near linear in the triangles plus the length of rods in radii.
+/// at most half of the size and their length at least eight radii. Returns nothing, too, if there would be
+/// too many vertices or if cancelled. Cost: near linear in the triangles plus the length of rods in radii.
 std::optional<TetMesh> tetrahedra_of_rods(const Plc& plc, const SurfaceTolerance& tolerance,
                                           const RodLimits& limits, const Execution& execution = {});
 

@@ -35,12 +35,14 @@ std::array<Layer, 3> layers_around(std::size_t in_ring) {
   return {{{in_ring, 1}, {std::max(fewest, (in_ring + 1) / 2), first}, {fewest, times * first}}};
 }
 
-/// Returns the largest distance of rings in a sheath, in radii of the rod.
+/// Returns the largest permitted distance between neighbouring circles of a layer, thus also between rings of
+/// the rod, in radii of the rod.
 double sheath_spacing(std::size_t in_ring) {
   constexpr std::size_t many = 22;
   return in_ring > many ? 4.4 : 4.8;
 }
-// Shares of the tolerance for edges along a bent rod. The first one that keeps the tolerance is used.
+// Shares of the tolerance for edges along a bent rod. The first one with which faces keep the tolerance is
+// used.
 constexpr std::array<double, 3> shares_along{0.35, 0.2, 0.1};
 // Rods whose axis turns by more than this angle (radians) over the reach of the sheath get no sheath.
 constexpr double sharpest_bend = 0.2;
@@ -69,8 +71,8 @@ class SheathFilling {
     mesh_.tet_thin.assign(mesh_.tets.size(), 0);
   }
 
-  /// Returns into how many equal parts a turn is divided such that the layers look the same after each part.
-  /// In the outermost layer only every second vertex has the same place along the rod.
+  /// Returns the largest number of equal parts of a turn such that the layers look the same after a turn by
+  /// one part. In the outermost layer only every second vertex has the same place along the rod.
   static std::size_t parts_of_turn(std::size_t in_ring) {
     std::size_t parts = in_ring;
     for (const Layer& layer : layers_around(in_ring)) parts = std::gcd(parts, layer.count);
@@ -78,9 +80,9 @@ class SheathFilling {
   }
 
  private:
-  // Every second vertex of the outermost layer is moved along the rod by this share of the distance of rings.
-  // Otherwise the corners of the skin's quadrilaterals would lie on circles, and Delaunay tetrahedra beside
-  // it might have either diagonal.
+  // Every second vertex of the outermost layer is moved along the rod by this share of the distance between
+  // neighbouring circles. Otherwise the corners of the skin's quadrilaterals would lie on circles, and
+  // Delaunay tetrahedra beside it might have either diagonal.
   static constexpr double shifted = 0.15;
   static constexpr std::size_t axis_layer = 3;  // the axis, as a layer of one vertex between rings
 
@@ -203,8 +205,8 @@ class SheathFilling {
     add_face(a, b, c, patch, region);
   }
 
-  /// Adds the tets of the column over a triangle of two vertices of one layer and one of a neighbouring
-  /// layer, and its faces at the ends.
+  /// Adds the tets of a column along the rod, and the column's faces at the ends. Its section is a triangle
+  /// with two corners in one layer and one corner in a neighbouring layer.
   void add_column(std::size_t pair, std::size_t k, std::size_t apex, std::size_t of_apex, Index region) {
     const bool is_apex_between = is_between_rings(apex);
     const auto a = [&](std::size_t level) { return at(pair, level, k); };

@@ -13,7 +13,7 @@
 namespace collarmesh {
 
 /// A rod inside another region, with tetrahedra in the rod and in a sheath around it. Edges on the outside of
-/// the sheath are as long as the distance between neighbouring rings of vertices around the rod.
+/// the sheath are about as long as the distance between neighbouring rings of vertices around the rod.
 struct SheathedRod {
   /// An end of the rod on a planar patch of the region around it.
   struct End {
@@ -23,7 +23,7 @@ struct SheathedRod {
   };
 
   TetMesh mesh;  ///< the tets of the rod and of its sheath, their faces on patches and edges on curves
-  std::vector<Index> fixed;                ///< the vertices of the rod itself
+  std::vector<Index> fixed;                ///< the vertices of the rod without its sheath
   Index region = 0;                        ///< the rod
   Index around = 0;                        ///< the region around it
   Index patch = none;                      ///< the smooth patch between them
@@ -35,8 +35,9 @@ struct SheathedRod {
 };
 
 /// Returns the thin rods of a complex that lie in another region, which alone surrounds them: closed rings,
-/// and straight or bent rods both of whose ends lie in planar patches on the outside of that region. Returns
-/// nothing if there are none, or too many vertices, or if a rod needs more room than the size.
+/// and straight or bent rods both of whose ends lie in planar patches on the outside of that region. Leaves
+/// out rods that bend sharply, whose rings cannot keep the tolerance, or whose sheaths are wider than the
+/// size. Returns none if they would take too many vertices or if cancelled.
 std::vector<SheathedRod> sheathed_rods(const Plc& plc, const SurfaceTolerance& tolerance,
                                        const RodLimits& limits, const Execution& execution = {});
 

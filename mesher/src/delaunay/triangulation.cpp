@@ -81,11 +81,12 @@ bool Triangulation::in_conflict_exact(Index cell, const Point& p) const {
   return predicates::in_sphere_exact(point(v[0]), point(v[1]), point(v[2]), point(v[3]), p);
 }
 
-// Computes the sphere and its margin. Let e = 2^-53, L the longest edge from the first corner, and k = 16 e
-// L^3 / |det|. The centre and the radius are off by at most d = k (r + L) + 2 e |c| + 4 e r; where they come
-// from exact arithmetic, k is 0 and 2 e |c| becomes 6 e |c|. The comparison of |p c|^2 with r^2 is right if
-// they differ by more than 2 d (r + |pc| + d) + 8 e (r^2 + |pc|^2). This is at most margin * (r^2 + |pc|^2)
-// with the margin below, because r + |pc| is at most sqrt(2) (r^2 + |pc|^2) / r.
+// Computes the sphere and its margin. Let e = 2^-53, L the longest edge from the first corner, k = 16 e L^3 /
+// |det|, r the radius, c the centre, and |c| its largest coordinate. Centre and radius are off by at most d =
+// k (r + L) + 2 e |c| + 4 e r; where they come from exact arithmetic, k is 0 and 2 e |c| becomes 6 e |c|. The
+// comparison of the squared distance |pc|^2 of a point p from the centre with r^2 is right if they differ by
+// more than 2 d (r + |pc| + d) + 8 e (r^2 + |pc|^2). This is at most margin * (r^2 + |pc|^2) with the margin
+// below, because r + |pc| is at most sqrt(2) (r^2 + |pc|^2) / r.
 Triangulation::Sphere Triangulation::circumsphere(const std::array<Index, 4>& corners) const {
   constexpr double e = 0x1p-53;
   const Point& a = point(corners[0]);

@@ -25,7 +25,7 @@ inline FaceId face_id(Index cell, unsigned corner) { return 4 * cell + corner; }
 struct ConflictZone {
   Point point;
   std::vector<Index> cells;
-  std::vector<FaceId> border;   ///< faces of zone cells towards cells outside the zone (or the hull)
+  std::vector<FaceId> border;   ///< faces of the zone's cells towards cells outside the zone, or on the hull
   std::vector<Index> vertices;  ///< vertices of the zone's cells: the new vertex's neighbours
   std::vector<Index> created;   ///< after insert: the new cell over border[i]; the new vertex is its corner
                                 ///< opposite that face
@@ -216,7 +216,7 @@ class Triangulation {
 class Triangulation::Block {
  public:
   /// Finds all cells in conflict with p, as Triangulation::find_conflict_zone does. Returns false if the zone
-  /// has a vertex of another block, or if the block may have no more vertices or cells.
+  /// has a vertex of another block, or if the block has no room for the new vertex or its cells.
   bool find_conflict_zone(const Point& p, Index start, ConflictZone& zone);
   /// Inserts the zone's point. Precondition: the zone lies in this block. The vertex gets another number when
   /// blocks are joined.

@@ -21,7 +21,7 @@ Box bounds_of(std::span<const PolygonSoup> soups) {
   return bounds;
 }
 
-// Returns a tag that no facet has; 0 if no facet has a tag.
+// Returns a tag that no facet has; 0 if all facets have tag 0.
 Tag unused_tag(std::span<const PolygonSoup> soups) {
   Tag largest = 0;
   for (const PolygonSoup& soup : soups)

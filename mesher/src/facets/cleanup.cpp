@@ -19,8 +19,8 @@ namespace {
 
 using Edge = std::array<Index, 2>;
 
-// Groups of collinear triangles: triangles of a group share edges, so they lie on one line. Each of their
-// edges is cut at every point of the group between its ends.
+// Groups of triangles with collinear corners: triangles of a group are connected by edges, so all lie on one
+// line. Each of their edges is cut at every point of the group between its ends.
 class CollinearGroups {
  public:
   CollinearGroups(const ComplexDraft& draft, const std::vector<Index>& flat)
@@ -90,7 +90,7 @@ void add_cut(const Segment& segment, const CollinearGroups& groups, ComplexDraft
   result.segments.push_back(piece);
 }
 
-// A triangle with its sorted corners, by which triangles are sorted.
+// A triangle and its sorted corners, for sorting triangles.
 struct TriangleByCorners {
   Corners key;  // sorted corners
   Index triangle;

@@ -8,12 +8,12 @@ namespace collarmesh::facets {
 /// triangle is cut at the corner in between, so the surface keeps the same points and stays closed.
 void remove_collinear_triangles(ComplexDraft& draft);
 
-/// Removes duplicate triangles within each soup, except the first.
+/// Removes all but the first of the triangles of a soup with the same corners.
 void remove_duplicates_within_soups(ComplexDraft& draft);
 
-/// Removes duplicate triangles of different soups, except the first: touching solids then share one
-/// interface. If the soup of a removed triangle had its solid on one side, it gets a claim (Claim) to that
-/// side. Precondition: the triangles of each soup are oriented.
+/// Removes all but the first of the triangles with the same corners, whatever their soups: touching solids
+/// then share one interface. If the soup of a removed triangle had its solid on one side, the soup gets a
+/// claim (Claim) to that side. Precondition: the triangles of each soup are oriented.
 void merge_duplicates_across_soups(ComplexDraft& draft);
 
 }  // namespace collarmesh::facets

@@ -31,8 +31,8 @@ struct Segment {
   Index soup = 0;
 };
 
-/// The claim of a soup whose triangle was dropped as a duplicate: its solid is on this side of the remaining
-/// triangle.
+/// The claim of a soup whose triangle was dropped as a duplicate: the soup's solid is on this side of the
+/// triangle that is left.
 struct Claim {
   Index side = 0;  ///< 2 t behind triangle t, 2 t + 1 in front of it
   Index soup = 0;
@@ -54,8 +54,8 @@ struct ComplexDraft {
   std::vector<bool> soup_gives_features;  ///< PolygonSoup::given_features, by soup
 
   Box bounds;
-  double planar_tolerance = 0;   ///< absolute distance
-  double largest_deviation = 0;  ///< absolute distance
+  double planar_tolerance = 0;   ///< permitted distance of a polygon's corners from its plane, absolute
+  double largest_deviation = 0;  ///< of points from fitted planes or lines, or by welding; absolute
   Plc::Cleanup cleanup;
 
   /// Returns the distance by which rounding alone may move points off a plane.

@@ -23,8 +23,8 @@ class EdgeTable {
   Index edge_of(Index side) const { return edge_of_side_[side]; }
   /// Returns the edge between two points, or none.
   Index find(Index a, Index b) const;
-  /// Updates the table after corners 1 and 2 of a triangle were swapped. Cost: linear in the triangles on its
-  /// sides.
+  /// Updates the table after corners 1 and 2 of a triangle were swapped. Cost: linear in the number of
+  /// triangles on its edges.
   void turn(Index triangle);
 
  private:

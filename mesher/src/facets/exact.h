@@ -22,7 +22,7 @@ bool between(const Point& a, const Point& b, const Point& c);
 /// plane, and a, b and c are not on one line.
 bool same_side(const Point& a, const Point& b, const Point& c, const Point& d);
 
-/// Returns the sign of t0 - t1, where the line from p to q crosses the plane of triangle i at parameter ti.
+/// Returns the sign of r0 - r1, where the line from p to q crosses the plane of triangle ti at parameter ri.
 /// Precondition: p and q lie strictly on different sides of both planes.
 int compare_crossings(const Point& p, const Point& q, const std::array<Point, 3>& t0,
                       const std::array<Point, 3>& t1);

@@ -161,7 +161,8 @@ class FacetTriangulator {
       }
   }
 
-  // Cuts convex quadrangles, the most frequent polygons, without a triangulation.
+  // Cuts a convex quadrangle, the most frequent polygon, without a triangulation. Returns false if the facet
+  // is none.
   bool cut_convex_quadrangle(const Facet& facet) {
     if (facet.loops.size() > 1 || facet.loops[0].size() != 4 || !facet.segments.empty() ||
         !facet.points.empty() || !facet.holes.empty())

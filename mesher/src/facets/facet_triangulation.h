@@ -22,8 +22,9 @@ struct BentFacets {
   std::vector<Point> where;  ///< places of some of them
 };
 
-/// Cuts facets into triangles without reporting faults. Cuts a polygon that is not planar in its best-fitting
-/// plane or, if its edges cross there, into a fan from one of its corners. Leaves out a polygon without area.
+/// Cuts facets into triangles without reporting faults. Triangulates a polygon that is not planar in a
+/// projection along an axis or, if its edges cross there, as a fan from one of its corners. Leaves out a
+/// polygon without area.
 BentFacets triangulate_any_facets(std::span<const PolygonSoup> soups, const PointMap& map,
                                   ComplexDraft& draft);
 

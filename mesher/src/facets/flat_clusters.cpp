@@ -11,11 +11,11 @@ namespace {
 
 // A triangle is a needle if its height is below this many planar tolerances.
 constexpr double needle_height = 10;
-// A triangle whose height is below this many planar tolerances may belong to a plane that does not match its
-// normal.
+// A triangle whose height is below this many tolerances of a plane may belong to that plane even if it faces
+// the other way.
 constexpr double foldable_height = 2;
-// The tolerance of a triangle's plane is at most this share of its height, so that the faces of a body
-// smaller than the planar tolerance stay distinct.
+// The tolerance of a seed's plane is at most this share of the seed's height (but covers rounding), so that
+// the faces of a body smaller than the planar tolerance stay distinct.
 constexpr double share_of_height = 0.1;
 
 double longest_side(const ComplexDraft& draft, Index t) {
@@ -112,7 +112,8 @@ class ClusterFinder {
            draft_.origins[s].facet == draft_.origins[t].facet;
   }
 
-  // Returns whether the triangle of this side lies in the plane of the seed and faces the same way.
+  // Returns whether the triangle of this side lies in the plane of the seed, and faces the same way or is too
+  // low to tell.
   bool in_plane(Index side, Index seed) const {
     const Point& p = draft_.points[apex(draft_.triangles, side)];
     if (!point_in_plane(p, seed)) return false;

@@ -18,14 +18,14 @@ struct FlatClusters {
 /// Edges at which clusters end even if the triangles on both sides lie in one plane.
 enum class ClusterBorder {
   none,           ///< no such edges
-  given_features  ///< between facets of different tags in soups that give their features
+  given_features  ///< between facets of different tags or soups, if one of these soups gives its features
 };
 
 /// Finds the clusters. Cost: O(n log n).
 FlatClusters find_flat_clusters(const ComplexDraft& draft, const EdgeTable& edges,
                                 ClusterBorder border = ClusterBorder::none);
 
-/// Returns the unit normal of a triangle of the draft.
+/// Returns the unit normal of a triangle of the draft; zero if it has no area.
 Vector unit_normal(const ComplexDraft& draft, Index triangle);
 
 }  // namespace collarmesh::facets

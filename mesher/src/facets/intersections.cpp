@@ -135,7 +135,7 @@ class IntersectionFinder {
     const auto from = [](const Corners& t, unsigned i) {
       return Corners{t[i % 3], t[(i + 1) % 3], t[(i + 2) % 3]};
     };
-    unsigned common = 0, in_f = 0, in_s = 0;  // the sums of the positions of common corners
+    unsigned common = 0, in_f = 0, in_s = 0;  // number of common corners; sums of their positions in f and s
     for (unsigned a = 0; a < 3; ++a)
       for (unsigned b = 0; b < 3; ++b)
         if (f[a] == s[b]) {
@@ -258,7 +258,7 @@ class IntersectionFinder {
     return both.centre();
   }
 
-  // Returns the place where a side of the first simplex pierces the second, a triangle.
+  // Returns a place where a side of the first simplex pierces the second, if that is a triangle.
   std::optional<Point> piercing_point(const Simplex& first, const Simplex& second, unsigned common) const {
     if (first.size < 2 || second.size < 3) return std::nullopt;
     const auto& s = second.points;

@@ -118,7 +118,7 @@ class NearTouchingFinder {
         }
   }
 
-  // Returns the largest distance between two curves, in both directions; nothing if it exceeds the limit.
+  // Returns the largest distance of a point of either curve from the other; nothing if it exceeds the limit.
   std::optional<Nearest> largest_distance(Index c, Index d) const {
     Nearest largest{0, at(plc_.curves[c].points.front())};
     for (const auto& [from, to] : {std::pair(c, d), std::pair(d, c)}) {
@@ -160,8 +160,8 @@ class NearTouchingFinder {
            });
   }
 
-  // Returns whether one of two features is part of the other, or both meet in a common one. The first has the
-  // lower dimension.
+  // Returns whether one of two features is part of the other, or both meet in a common one. Precondition: the
+  // dimension of the first is not higher than that of the second.
   bool related(const Element& a, const Element& b) const {
     if (a.dimension == 0) {
       if (b.dimension == 1) return plc_.vertex_on_curve(a.feature, b.feature);

@@ -43,7 +43,7 @@ class Orienter {
       for (unsigned i = 0; i < 3; ++i) visit_across(3 * component_[next] + i);
   }
 
-  // Returns the only other side of the same soup on the same edge, or none.
+  // Returns the other side of the same soup on the same edge; none unless there is exactly one.
   Index across(Index side) const {
     const Index soup = draft_.origins[side / 3].soup;
     Index other = none;

@@ -16,7 +16,7 @@ namespace collarmesh::facets {
 /// Precondition: triangles meet in common edges and corners only.
 DisjointSets find_shells(const ComplexDraft& draft, const EdgeTable& edges);
 
-/// A search for the places where straight lines meet the triangles.
+/// A search for the triangles that straight segments cross.
 class LineCaster {
  public:
   /// Keeps references to both arguments. The triangles are the first items of the tree, in their order.
@@ -28,8 +28,8 @@ class LineCaster {
     Index entry_side() const { return forward ? back_side(triangle) : front_side(triangle); }
     Index exit_side() const { return forward ? front_side(triangle) : back_side(triangle); }
   };
-  /// Returns the triangles between p and q in order from p; nothing if the line meets an edge or corner of a
-  /// triangle, or if p or q lies on one. Exact.
+  /// Returns the crossings of the segment pq with triangles, in order from p; nothing if the segment meets an
+  /// edge or corner of a triangle, or if p or q lies on a triangle. Exact.
   std::optional<std::vector<Crossing>> cast(const Point& p, const Point& q) const;
 
  private:

@@ -96,9 +96,9 @@ void Detours::note_changes(std::vector<Index>& tets) {
   }
 }
 
-// Improves a tet by a single operation if one helps now. Otherwise takes the first detour that makes all tets
-// good and no more of them thin than before, or else the detour with the best worst tet. Returns whether
-// `changed_` changed.
+// Improves a tet by a single operation if one helps now. Otherwise takes the first detour after which all
+// changed tets are good and no more of them are thin than before; or else the best detour that is worth it,
+// judged first by whether it makes more tets thin, then by its worst tet. Returns whether the mesh changed.
 bool Detours::help(Index tet, Effort effort) {
   if (Change change = propose(tet); !change.is_none()) {
     ++trials_;
@@ -127,8 +127,8 @@ bool Detours::help(Index tet, Effort effort) {
   return best.better && attempt(step, [](const Result&) { return true; }).taken;
 }
 
-// Returns whether to accept a result. Except as a last resort, more thin tets are accepted only if all other
-// tets are good afterwards.
+// Returns whether to accept a result. Except as a last resort, more thin tets are accepted only if all
+// changed tets are good afterwards.
 bool Detours::is_worth_it(const Result& result, Effort effort) const {
   return effort == Effort::last_resort || !result.more_thin || result.worst >= chooser_.wanted();
 }

@@ -19,12 +19,12 @@ namespace collarmesh::remeshing::improvement {
 /// same result.
 class Detours {
  public:
-  /// Keeps all by reference. Starts no detour after `most_trials` operations, but completes the current tet.
+  /// Keeps all by reference. After `most_trials` tried operations, completes the current tet and stops.
   Detours(EditableMesh& edited, OperationChooser& chooser, Operations& operations, std::size_t most_trials)
       : edited_(edited), chooser_(chooser), operations_(operations), most_trials_(most_trials) {}
 
-  /// Takes detours for these tets and, where the number of vertices may change, for poor tets that detours
-  /// leave. Takes the worst tet first; tries operations at the tet itself, then beside it; tries again after
+  /// Takes detours for these tets, and for poor tets that detours leave, where the number of vertices may
+  /// change. Takes the worst tet first; tries operations at the tet itself, then beside it; tries again after
   /// a change at a corner, until nothing helps. Returns the number of detours taken. Calls `stopped` between
   /// tets. Precondition: the mesh is prepared for trials.
   std::size_t take_all(std::vector<Index> tets, const std::function<bool()>& stopped);

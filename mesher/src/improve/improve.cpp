@@ -25,7 +25,7 @@ namespace collarmesh {
 namespace remeshing::improvement {
 namespace {
 
-// Changes are proposed at once for one in this many tets, so few that proposals rarely meet.
+// Changes are proposed for one in this many tets at a time: so few that a change rarely touches another one.
 constexpr std::size_t tets_per_proposal = 2000;
 constexpr std::size_t most_proposals = 1024;
 constexpr std::size_t steps_between_reports = 1024;
@@ -33,7 +33,7 @@ constexpr std::size_t steps_between_reports = 1024;
 // small gains do not pay. In detours, which work on few tets, they may help.
 constexpr double least_gain = 0.02, least_gain_in_detours = 1e-3;
 // Detours are taken if at most `few` tets, plus one in `tets_per_few` of all tets, need them; with more such
-// tets the bound is out of reach.
+// tets the wanted quality is out of reach.
 constexpr std::size_t few = 50, tets_per_few = 50;
 // The number of operations to try in detours: `trials`, plus one for each `tets_per_trial` tets.
 constexpr std::size_t trials = 4000, tets_per_trial = 50;
@@ -97,8 +97,8 @@ class Improvement {
     });
   }
 
-  // Finds poor tets, like find_poor_tets, in less time. Precondition: tets have changed only in batches after
-  // this one, and `poor_` is in the order of tets.
+  // Finds poor tets, like find_poor_tets, in less time. Preconditions: since `poor_` was found, tets have
+  // changed only in batches after this one; `poor_` is in the order of tets.
   void find_poor_tets_again(std::uint32_t batch) {
     assert(std::ranges::is_sorted(poor_, {}, &Item::tet));
     std::vector<Index> asked;

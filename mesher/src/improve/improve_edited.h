@@ -9,15 +9,16 @@
 namespace collarmesh {
 
 /// Improves a mesh that the caller edits, like `improve`, but does not write it back or mark thin tets, and
-/// runs in the caller's arena. `thoroughly`: take detours and fill cavities again, which is slow where many
-/// tets stay poor.
+/// runs in the caller's arena. `thoroughly`: take detours, and fill the space around flat tets with new
+/// tets, which is slow where many tets stay poor.
 ImproveReport improve(remeshing::EditableMesh& edited, const ImproveOptions& options,
                       const Execution& execution, bool thoroughly = true);
 
 namespace remeshing::improvement {
 
 /// Divides curve edges, which no other operation does: inserts a vertex in the middle of the longest curve
-/// edge of each tet whose angles miss their bounds, if that edge is much longer than other edges of the tet.
+/// edge of each tet that misses the bounds on both its angles and its radius-edge ratio, if that edge is much
+/// longer than the tet's shortest edge.
 /// Tets may have poor shapes afterwards and should be improved. Returns the number of inserted vertices.
 std::size_t divide_curves_at_poor_tets(EditableMesh& edited, const Bounds& bounds);
 

@@ -18,8 +18,8 @@ std::set<Index> nodes_of_side(const TetMesh& mesh, Tag tag) {
   return nodes;
 }
 
-/// Ties the nodes of the plus sides. Leaves out nodes of a front, which both sides share, and nodes already
-/// tied to another patch at a junction, because a node can be dependent only once.
+/// Ties the nodes of the plus sides to the minus sides. Leaves out nodes of a front, which both sides share,
+/// and nodes that are tied to another patch at a junction, because a node can be dependent only once.
 void write_ties(FileWriter& out, const TetMesh& mesh, const Interfaces& interfaces, const NamesByTag& names) {
   std::set<Index> tied;
   for (const Sides& sides : interfaces.sides) {

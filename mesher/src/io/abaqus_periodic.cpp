@@ -63,7 +63,8 @@ class Equations {
   }
 
   void write() {
-    std::vector<Index> starts;  // first nodes of chains: nodes that are no images of others
+    std::vector<Index> starts;  // first nodes of chains: nodes that are no images, then the rest, for
+                                // closed chains
     for (const bool are_images : {false, true})
       for (const auto& each : steps_)
         if (images_.contains(each.first) == are_images) starts.push_back(each.first);

@@ -34,7 +34,7 @@ class HalvedPyramids {
     std::size_t half;
     unsigned number;  ///< 1: S1
   };
-  /// Returns the sides of halves that make up a side of the pyramid: two for the base.
+  /// Returns the sides of halves that make up a side of the pyramid: two for its base, one for others.
   std::vector<Side> sides(Index pyramid, std::size_t side) const;
 
   /// Writes the equations for the nodes in the middle of bases: their displacements and temperatures follow

@@ -52,7 +52,7 @@ class Lines {
  public:
   Lines(const std::string& path, std::string_view text) : path_(path), text_(text) {}
 
-  /// Returns whether there is a next line, which `next` then takes.
+  /// Sets `line` to the next line, but does not go past it: `next` does. Returns false at the end.
   bool peek(std::string_view& line) {
     while (at_ < text_.size()) {
       end_ = std::min(text_.find('\n', at_), text_.size());
@@ -152,7 +152,8 @@ const ElementType* find_type(std::string_view name) {
   return best;
 }
 
-/// An element set; `named_apart`: defined by an *ELSET, not only by the *ELEMENT that lists its elements.
+/// An element set. `name` is in lower case, `written` as in the file. `named_apart`: an *ELSET defines it,
+/// not only the *ELEMENT that lists its elements.
 struct Set {
   std::string name, written;
   std::vector<std::int64_t> members;
@@ -399,8 +400,8 @@ class AbaqusReader {
     return sets_[found->second].members;
   }
 
-  /// Limits the members of sets: ranges and sets that name each other again and again would grow without
-  /// bound.
+  /// Limits the total number of members of sets: with ranges, and sets that contain sets, a small file could
+  /// define any number.
   void require_room(std::size_t members) {
     constexpr std::size_t most_repeats = 64;
     repeated_members_ += members;
@@ -453,8 +454,8 @@ class AbaqusReader {
     });
   }
 
-  /// Sets the tags of cells. If a cell is in several sets, a set with a name of ours decides; else the first
-  /// *ELSET (but not the set of everything); else the set of its *ELEMENT.
+  /// Sets the tags of cells by sets. If a cell is in several, the first with a name of ours decides; without
+  /// such a set, the first *ELSET other than the set of everything; without that, the set of its *ELEMENT.
   void tag_cells() {
     Tagged tagged;
     for (const CellKind kind : all_cell_kinds) {
@@ -497,7 +498,7 @@ class AbaqusReader {
     return tag;
   }
 
-  /// Reads the sets of elements by region (VOLUME_1) of our own files.
+  /// Reads the regions of cells from the element sets VOLUME_1 and so on in our own files.
   void read_volumes() {
     PerKind<std::vector<Index>> regions;
     for (const CellKind kind : all_cell_kinds)
@@ -535,7 +536,7 @@ class AbaqusReader {
     return static_cast<std::size_t>(found - numbers.begin());
   }
 
-  /// Adds a side, turned outwards.
+  /// Adds a side of an element to the faces, with its normal outwards.
   void add_side(const Side& side, Tag tag) {
     const Index element = elements_.find(side.element);
     if (element == none || shape_of(places_[element].kind).dimension != 3) return;

@@ -48,7 +48,7 @@ void write_numbers(FileWriter& out, const std::vector<Index>& numbers) {
     out << numbers[i] << (i + 1 == numbers.size() || (i + 1) % numbers_a_line == 0 ? ",\n" : ", ");
 }
 
-/// Returns names of sets that differ from each other and from known ones.
+/// Returns names of sets that differ from each other and from those in `known`, and adds them there.
 NamesByTag set_names_of(const TetMesh& mesh, std::size_t dimension, const std::vector<Tag>& tags,
                         DistinctNames& known) {
   NamesByTag names;

@@ -24,7 +24,7 @@ namespace {
 constexpr std::size_t nodes_on_line = 8, numbers_on_line = 8;
 constexpr std::size_t longest_component = 32;
 
-/// Formats as 6e21.13e3: the exponent has three digits.
+/// Formats a number as one field of 6e21.13e3: the exponent has three digits.
 std::string real_field(double value) {
   std::string text = fmt::format("{:.13E}", value);
   const std::size_t sign = text.find('E') + 1;

@@ -10,8 +10,8 @@ namespace collarmesh::io {
 constexpr std::size_t base64_size(std::size_t bytes) { return (bytes + 2) / 3 * 4; }
 
 std::string base64_encode(std::string_view bytes);
-/// Encodes into `base64_size` existing characters. Texts of pieces can be joined if all pieces but the last
-/// have a multiple of three bytes.
+/// Encodes into existing characters at `text`, `base64_size` of them. Data may be encoded in pieces whose
+/// texts are joined if all pieces but the last have a multiple of three bytes.
 void base64_encode(std::string_view bytes, char* text);
 
 /// Decodes a text of whole groups of four characters; returns nothing if it is not base64.

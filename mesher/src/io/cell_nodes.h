@@ -45,14 +45,15 @@ class CellNodes {
   }
 
   void add(Index node) { nodes_[count_++] = node; }
-  /// Returns a cell whose k-th node is this cell's node order[k]; unchanged if the order has another length.
+  /// Returns a cell whose k-th node is this cell's node order[k], or this cell if the order has another
+  /// length.
   CellNodes in_order(std::span<const std::uint8_t> order) const {
     if (order.size() != count_) return *this;
     CellNodes result;
     for (const std::uint8_t k : order) result.add(nodes_[k]);
     return result;
   }
-  /// Returns the cell whose node order[k] is this cell's k-th node; unchanged if the order has another
+  /// Returns the cell whose node order[k] is this cell's k-th node, or this cell if the order has another
   /// length.
   CellNodes from_order(std::span<const std::uint8_t> order) const {
     if (order.size() != count_) return *this;
@@ -117,8 +118,8 @@ constexpr NodesOf nodes_of(CellKind kind) {
   return of_kind[kind];
 }
 
-/// Returns the tags of the cells of a kind. The result is const if the mesh is, as in the following
-/// functions.
+/// Returns the tags of the cells of a kind. The result is const if the mesh is; this also holds for the
+/// functions below.
 template <class Mesh>
 auto& tags_of(Mesh& mesh, CellKind kind) {
   switch (kind) {
@@ -130,8 +131,8 @@ auto& tags_of(Mesh& mesh, CellKind kind) {
     default: return mesh.edge_tag;
   }
 }
-/// Returns the regions of the cells of volumes, the patches of triangles or quadrangles, or the curves of
-/// edges.
+/// Returns for each cell of a kind its feature: the region of a cell with volume, the patch of a triangle or
+/// quadrangle, the curve of an edge.
 template <class Mesh>
 auto& features_of(Mesh& mesh, CellKind kind) {
   switch (kind) {
@@ -143,12 +144,12 @@ auto& features_of(Mesh& mesh, CellKind kind) {
     default: return mesh.edge_curve;
   }
 }
-/// Returns the regions behind and in front of triangles or quadrangles.
+/// Returns for each triangle, or each quadrangle, the regions behind and in front of it.
 template <class Mesh>
 auto& regions_beside(Mesh& mesh, CellKind kind) {
   return kind == CellKind::quadrangle ? mesh.layers.quad_regions : mesh.face_regions;
 }
-/// Returns the numbers of the layers of cells of volumes; those of tets may be missing.
+/// Returns for each cell of a kind with volume the number of its layer; for tets the list may be empty.
 template <class Mesh>
 auto& layers_of(Mesh& mesh, CellKind kind) {
   switch (kind) {
@@ -168,15 +169,15 @@ inline std::uint16_t layer_of(const TetMesh& mesh, CellKind kind, std::size_t i)
   return layers.empty() ? 0 : layers[i];
 }
 
-/// Our node at each place of a prism in formats that list the mid-edge nodes between the triangles before
-/// those of the second triangle: CGNS, Exodus and Nastran.
+/// Our node at each place of a prism in formats that list the mid-edge nodes of the edges between the two
+/// triangles before those of the second triangle: CGNS, Exodus and Nastran.
 inline constexpr std::array<std::uint8_t, 15> prism_between_before_top{0, 1,  2,  3,  4, 5,  6, 7,
                                                                        8, 12, 13, 14, 9, 10, 11};
 inline CellNodes with_between_before_top(CellKind kind, const CellNodes& nodes) {
   return kind == CellKind::prism ? nodes.in_order(prism_between_before_top) : nodes;
 }
 
-/// Calls `call(kind)` for each kind of cells of a dimension that the mesh has.
+/// Calls `call(kind)` for each kind of cells of this dimension of which the mesh has cells.
 template <class Call>
 void for_each_kind(const TetMesh& mesh, std::size_t dimension, const Call& call) {
   for (const CellKind kind : all_cell_kinds)
@@ -189,7 +190,7 @@ inline std::size_t count_of_dimension(const TetMesh& mesh, std::size_t dimension
   for_each_kind(mesh, dimension, [&](CellKind kind) { count += count_of(mesh, kind); });
   return count;
 }
-/// Returns the number of cells of the kinds before this one.
+/// Returns the number of cells of all kinds that come before this one in `all_cell_kinds`.
 inline std::size_t count_before(const TetMesh& mesh, CellKind kind) {
   std::size_t count = 0;
   for (const CellKind before : all_cell_kinds) {

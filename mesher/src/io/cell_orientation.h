@@ -9,7 +9,8 @@ namespace collarmesh::io {
 /// is not planar.
 double six_volume_of(const TetMesh& mesh, CellKind kind, std::size_t cell);
 
-/// Returns the cell of a volume turned inside out, or the triangle or quadrangle turned over.
+/// Returns a cell with the opposite orientation: a cell with volume turned inside out, a triangle or
+/// quadrangle turned over.
 CellNodes turned(CellKind kind, const CellNodes& nodes);
 
 }  // namespace collarmesh::io

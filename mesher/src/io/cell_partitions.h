@@ -5,7 +5,7 @@
 #include "collarmesh/tet_mesh.h"
 
 /// The partitions of faces, edges and points of a partitioned mesh: each belongs to the lowest partition of
-/// the tets around it or, if there are none, to the lowest of all. Cost: linear.
+/// the tets around it or, if it is at no tet, to the lowest of all. Cost: linear.
 namespace collarmesh::io {
 
 /// Partition numbers read from files must be below this: formats have 32 bits for them, and some count from

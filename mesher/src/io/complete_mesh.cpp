@@ -26,8 +26,8 @@ void turn_cell(TetMesh& mesh, CellKind kind, std::size_t i) {
   set_cell(kind, i, turned(kind, nodes_of(kind)(mesh, i)), mesh);
 }
 
-/// Reverses all cells of a kind if most are negative, because programs differ in the order of corners. Cells
-/// that are negative then are really inverted, and stay so.
+/// Reverses all cells of a kind if most have negative volume, because programs differ in the order of
+/// corners. Cells whose volume is negative after this are really inverted, and stay so.
 void orient(TetMesh& mesh, CellKind kind) {
   const std::size_t count = count_of(mesh, kind);
   std::size_t negative = 0, positive = 0;
@@ -40,7 +40,7 @@ void orient(TetMesh& mesh, CellKind kind) {
   for (std::size_t i = 0; i < count; ++i) turn_cell(mesh, kind, i);
 }
 
-/// Finds the mid-edge node of an edge of a volume's cell from the two ends of the edge.
+/// The mid-edge nodes of cells with volume, by the two ends of their edges.
 class MidNodes {
  public:
   MidNodes(const std::string& path, const TetMesh& mesh) : path_(path) {
@@ -162,7 +162,7 @@ void complete_mesh(const std::string& path, TetMesh& mesh) {
   complete_layers(mesh);
   if (!has_region_numbers(mesh)) number_regions(mesh);
   for (const CellKind kind : surface_kinds)
-    if (mesh.tets.empty())  // then no face is reversed or has regions
+    if (mesh.tets.empty())  // without tets faces have no regions and keep their orientation
       regions_beside(mesh, kind).assign(count_of(mesh, kind), {0, 0});
     else if (regions_beside(mesh, kind).empty())
       find_face_regions(mesh, kind);

@@ -76,8 +76,8 @@ class ExodusFile {
   }
 
  private:
-  /// Makes a block for each region and kind of cells. The first block of a region has the region's number;
-  /// its further blocks get numbers above those of all regions.
+  /// Makes a block for each region and kind of cells. The first block of a region gets the region's number as
+  /// its id; the region's further blocks get ids above the numbers of all regions.
   void make_blocks() {
     std::map<std::pair<Index, CellKind>, Block> blocks;
     for_each_kind(mesh_, 3, [&](CellKind kind) {

@@ -4,8 +4,7 @@
 
 namespace collarmesh::io {
 
-/// Reads the bytes of a file. Throws ReadError with the system's reason. Allocates as much as the file really
-/// holds, whatever sizes it claims.
+/// Returns the bytes of a file, which may be a pipe. Throws ReadError with the system's reason.
 std::string read_bytes(const std::string& path);
 
 }  // namespace collarmesh::io

@@ -30,7 +30,7 @@ class FileWriter {
 
   /// Appends text as it is; long text without a copy.
   void append(std::string_view text);
-  /// Appends the bytes of a number in this order.
+  /// Appends the bytes of a number in this byte order.
   template <class Number>
   void append_bytes(Number value, std::endian order) {
     const auto bytes = bytes_of(value, order);

@@ -15,8 +15,8 @@
 /// Names of groups of cells as formats write and read them.
 namespace collarmesh::io {
 
-/// Replace all characters but ASCII letters, digits and `-` by `_`; the second function also turns letters
-/// into capitals.
+/// Return a text with `_` in place of all characters but ASCII letters, digits and `-`; the second function
+/// also turns letters into capitals.
 std::string word(std::string text);
 std::string capital_word(std::string text);
 
@@ -25,14 +25,16 @@ std::string capital_word(std::string text);
 std::string word_name(const TetMesh& mesh, std::size_t dimension, Tag tag);
 std::string capital_name(const TetMesh& mesh, std::size_t dimension, Tag tag);
 
-/// Returns the tag that a name of ours stands for, in upper or lower case.
+/// Returns the tag that a name made of dimension and tag stands for: 7 for "patch_7" or "Face7", in upper or
+/// lower case. Nothing for other names.
 std::optional<Tag> tag_of_group_name(std::size_t dimension, std::string_view name);
 
-/// Returns whether the name was given, as in CAD shapes, rather than made from kind and tag ("patch_7").
+/// Returns whether a name was given, not made of dimension and tag ("patch_7"). Names such as "Face7", which
+/// CAD shapes have, count as given.
 bool is_given_name(std::size_t dimension, std::string_view name);
 
 /// The tags of the groups in another program's file: groups with names of ours get the tags that these stand
-/// for, others are numbered from 1 in the order of the file, skipping tags in use.
+/// for; each other group gets the number after the largest tag so far, the first one 1.
 class GroupTags {
  public:
   Tag find(std::size_t dimension, const std::string& name);
@@ -42,7 +44,7 @@ class GroupTags {
   std::array<Tag, 4> next_{1, 1, 1, 1};
 };
 
-/// Names that are all different and not too long: "a", "a_2".
+/// Names that are all different and not too long: a second "a" becomes "a_2".
 class DistinctNames {
  public:
   /// `longest` is in bytes.

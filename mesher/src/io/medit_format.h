@@ -6,7 +6,7 @@
 
 namespace collarmesh::io {
 
-/// The first line of our own files, in which the reference of a tet is the index of its region.
+/// The first line of our own files, in which the reference of a cell with volume is the index of its region.
 constexpr std::string_view medit_signature = "# Written by collarmesh.\n";
 
 /// Returns the keyword of a kind of cells of first order. Tets, triangles and edges of second order add P2.

@@ -26,7 +26,8 @@ struct MeshFormat {
 constexpr std::array mesh_formats{MeshFormat{".msh", read_msh_cells}, MeshFormat{".mesh", read_medit_cells},
                                   MeshFormat{".vtu", read_vtu_cells}, MeshFormat{".vtp", read_vtp_cells}};
 
-/// Returns a point in each body. A body consists of tets with one tag that are connected by faces.
+/// Returns a point in each body, with the body's tag. A body consists of tets with one tag that are connected
+/// by faces.
 std::vector<PolygonSoup::RegionPoint> points_in_regions(const TetMesh& mesh) {
   if (mesh.tet_tag.size() != mesh.tets.size()) return {};
   std::vector<std::pair<std::array<Index, 3>, Index>> sides;  // corners in order, and the tet

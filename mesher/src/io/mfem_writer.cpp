@@ -29,8 +29,8 @@ constexpr int geometry_of(CellKind kind) {
   }
 }
 
-/// The order of nodes: corners first, then mid-edge nodes. MFEM numbers edges in the order in which they
-/// appear, element by element.
+/// The order of nodes in the file: corners first, then mid-edge nodes in the order of MFEM's edges, which
+/// MFEM numbers as they appear, element by element.
 struct Order {
   std::vector<Index> corner_number;  ///< by point; none: it is no corner
   std::vector<Index> corners, mid_nodes;

@@ -41,7 +41,7 @@ class EntityTable {
     return found != by_number_.end() ? found->second : find(number, 0);
   }
 
-  /// Numbers the entities that did not get their preferred number. Returns whether there were any.
+  /// Numbers the entities that have no number yet. Returns whether there were any.
   bool number_the_rest() {
     int next = 1;
     for (const MshEntity& e : entities_) next = std::max(next, e.number + 1);
@@ -55,8 +55,8 @@ class EntityTable {
   }
 
  private:
-  /// Adds an entity. Its preferred number is ignored if it is taken, or so large that few larger ones are
-  /// left.
+  /// Adds an entity. It gets no number yet if the preferred one is taken, or so large that few larger ones
+  /// are left.
   void add(Index number, Tag tag) {
     constexpr Index limit = std::numeric_limits<int>::max() / 2;
     MshEntity entity;
@@ -89,7 +89,7 @@ constexpr std::size_t cells_at_once = 16384;
 
 std::size_t ranges_of(std::size_t count) { return (count + cells_at_once - 1) / cells_at_once; }
 
-/// Assigns cells to entities, numbered in the order of their first cells.
+/// Assigns cells to entities. Adds missing entities to `table` in the order of their first cells.
 void assign_cells(const TetMesh& mesh, CellKind kind, EntityTable& table, std::vector<Index>& of_cell) {
   using Key = std::pair<Index, Tag>;
   const bool volumes = shape_of(kind).dimension == 3;
@@ -121,8 +121,8 @@ void assign_cells(const TetMesh& mesh, CellKind kind, EntityTable& table, std::v
   });
 }
 
-/// Assigns each node of cells of a kind to the entity of the last cell that has it. Skips the first `from`
-/// nodes of each cell.
+/// Assigns the nodes of cells of a kind to the entity of the last cell that has them; only nodes from
+/// position `from` of each cell on.
 void place_nodes(const TetMesh& mesh, CellKind kind, std::size_t from, MshEntities& result) {
   const auto dimension = static_cast<std::uint8_t>(shape_of(kind).dimension);
   for (std::size_t i = 0; i < count_of(mesh, kind); ++i) {
@@ -146,7 +146,7 @@ void place_corners_of_tets(const TetMesh& mesh, MshEntities& result) {
   });
 }
 
-/// Assigns points to entities: by the features of vertices where known, otherwise by the cells around.
+/// Assigns points to entities: by their features where known, otherwise by the cells that have them.
 void place_points(const TetMesh& mesh, Tables& tables, MshEntities& result) {
   if (mesh.tets.empty()) tables[3].find(1);
   result.of_point.resize(mesh.points.size());
@@ -239,7 +239,7 @@ void find_physicals(MshEntities& result) {
   }
 }
 
-/// The division of entities into parts. Parts are ordered by entity and partition, and numbered after the
+/// A divider of entities into parts. It orders parts by entity and partition, and numbers them after the
 /// entities.
 class Divider {
  public:

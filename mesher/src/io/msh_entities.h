@@ -49,7 +49,7 @@ struct MshParts {
   MshEntities entities;                           ///< physicals is empty
   std::array<std::vector<Part>, 4> of_dimension;  ///< for each entity of entities.of_dimension
   std::vector<Index> numbers;                     ///< numbers of the partitions that have tets, ascending
-  std::size_t partitions = 0;                     ///< number of partitions
+  std::size_t partitions = 0;                     ///< number of partitions, counting those without tets
 };
 
 MshParts divide_entities(const TetMesh& mesh, const MshEntities& whole);

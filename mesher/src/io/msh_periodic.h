@@ -19,11 +19,11 @@ struct MshLink {
                                             ///< one of the master
 };
 
-/// Finds points, curves and surfaces on the second sides of periodic faces, in this order. Gmsh allows one
-/// master per entity, so an entity with several gets the first one.
+/// Finds the links of points, curves and surfaces on the second sides of periodic faces, in this order. Gmsh
+/// allows one master per entity, so an entity that has several gets the first one.
 std::vector<MshLink> find_msh_links(const TetMesh& mesh, const MshEntities& entities);
 
-/// Writes the section $Periodic, unless it is empty. Formats before 4 have another word before the matrix.
+/// Writes the section $Periodic, unless it is empty. In formats before 4 a keyword precedes the matrix.
 void write_msh_links(FileWriter& out, const std::vector<MshLink>& links, int version);
 
 }  // namespace collarmesh::io

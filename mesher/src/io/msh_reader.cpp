@@ -141,7 +141,7 @@ std::size_t read_dimension(Values& values) {
   return static_cast<std::size_t>(dimension);
 }
 
-/// Returns the type of elements; null: they are points, which are skipped.
+/// Returns the type of elements that has this number; null if they are points, which are skipped.
 template <class Values>
 const GmshType* find_type(Values& values, int number) {
   if (number == gmsh_point) return nullptr;
@@ -550,7 +550,7 @@ void add_features(const Contents& contents, TetMesh& mesh) {
     mesh.features.push_back({node.dimension, node.dimension == 3 ? none : feature_of(node.entity)});
 }
 
-/// Adds one value for each cell of a kind, limited to these bounds; 0 where the file gives none.
+/// Adds to `data` one value for each cell of a kind, limited to [least, most]; 0 where the file gives none.
 template <class T>
 void add_data(Contents& contents, std::string_view name, CellKind kind, double least, double most,
               std::vector<T>& data) {

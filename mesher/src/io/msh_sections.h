@@ -38,8 +38,8 @@ class MshText {
     if (value < 0) scan_.fail(fmt::format("{}, {}, is negative", what, value));
     return static_cast<std::uint64_t>(value);
   }
-  /// Reads a count of items that take at least this many numbers each; a count that exceeds the section is an
-  /// error.
+  /// Reads a count of items that take at least this many numbers each; it is an error if the rest of the
+  /// section cannot hold so many.
   Index count(std::string_view what, std::size_t numbers) { return scan_.count(what, 2 * numbers); }
   double real(std::string_view what) { return scan_.number(what); }
   Point point(std::string_view what) { return scan_.point(what); }

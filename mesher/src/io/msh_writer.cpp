@@ -211,7 +211,7 @@ void write_elements(FileWriter& out, const TetMesh& mesh, const MshEntities& ent
   out << "$EndElements\n";
 }
 
-/// Writes a value of each cell, `value_of(kind, cell)`.
+/// Writes data with a value for each cell, `value_of(kind, cell)`.
 template <class ValueOf>
 void write_data(FileWriter& out, std::string_view name, const CellGroups& groups, const ValueOf& value_of) {
   out << "$ElementData\n1\n\"" << name << "\"\n1\n0\n3\n0\n1\n" << groups.count << '\n';
@@ -224,13 +224,13 @@ void write_data(FileWriter& out, std::string_view name, const CellGroups& groups
   out << "$EndElementData\n";
 }
 
-/// Returns the values of tets, and 0 for other cells.
+/// Returns a function that gives the values of tets, and 0 for other cells.
 template <class T>
 auto of_tets(const std::vector<T>& values) {
   return [&values](CellKind kind, Index i) { return kind == CellKind::tet ? values[i] : T{0}; };
 }
 
-/// Returns numbers for volumes that Gmsh fills with the ghosts of each partition.
+/// Returns for each partition the number of a new volume, which Gmsh fills with the ghosts of the partition.
 std::vector<int> ghost_volumes(const MshParts& parts) {
   int number = 0;
   for (const MshEntity& volume : parts.entities.of_dimension[3]) number = std::max(number, volume.number);

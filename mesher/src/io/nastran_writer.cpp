@@ -40,7 +40,7 @@ void write_grid_points(FileWriter& out, const TetMesh& mesh) {
   });
 }
 
-/// Returns the names of elements by order.
+/// Returns the names of the elements for a kind of cells, by order.
 constexpr std::array<const char*, 2> nastran_names_of(CellKind kind) {
   switch (kind) {
     case CellKind::tet: return {"CTETRA", "CTETRA"};

@@ -92,7 +92,7 @@ bool NetcdfWriter::grows(const Variable& variable) const {
   return !variable.dimensions.empty() && dimensions_[variable.dimensions.front()].unlimited;
 }
 
-/// Returns the size of all values in bytes, or of one record if the variable grows.
+/// Returns the size in bytes of all values of a variable or, if it grows, of one record.
 std::uint64_t NetcdfWriter::bytes_of(const Variable& variable) const {
   std::uint64_t bytes = size_of(variable.type);
   for (const std::size_t d : variable.dimensions)

@@ -16,7 +16,7 @@ namespace collarmesh::io {
 /// Members of each group, by the group's tag.
 using Groups = std::map<Tag, std::vector<Index>>;
 
-/// Returns by tag the nodes of the cells of a dimension, numbered from 1, ascending.
+/// Returns by tag the nodes of the cells of a dimension, ascending; nodes are numbered from 1.
 inline Groups nodes_by_tag(const TetMesh& mesh, std::size_t dimension) {
   Groups groups;
   for_each_kind(mesh, dimension, [&](CellKind kind) {
@@ -28,7 +28,7 @@ inline Groups nodes_by_tag(const TetMesh& mesh, std::size_t dimension) {
   return groups;
 }
 
-/// Returns by tag the cells of volumes, numbered from `first` in the order of their kinds.
+/// Returns by tag the numbers of cells with volume, which count from `first` in the order of the kinds.
 inline Groups volumes_by_tag(const TetMesh& mesh, std::size_t first) {
   Groups groups;
   for_each_kind(mesh, 3, [&](CellKind kind) {
@@ -59,8 +59,8 @@ inline std::map<Tag, std::size_t> numbered_tags(const std::vector<Tag>& tags, st
   return numbers;
 }
 
-/// Returns the tags themselves if all are positive numbers of 32 bits, otherwise numbers from 1 in their
-/// order.
+/// Returns a positive number for each tag: the tag itself if all tags are positive numbers of 32 bits,
+/// otherwise numbers from 1 in the order of the tags.
 inline std::map<Tag, std::size_t> positive_numbers(const std::vector<Tag>& tags) {
   std::map<Tag, std::size_t> numbers = numbered_tags(tags);
   if (std::all_of(numbers.begin(), numbers.end(), [](const auto& each) {

@@ -16,7 +16,7 @@ constexpr std::size_t size_of(NumberType type) {
   return sizes[static_cast<std::size_t>(type)];
 }
 
-/// Returns a number from its bytes in this order.
+/// Returns the number whose bytes, in this byte order, begin at `at`.
 template <class Number>
 Number value_at(std::string_view bytes, std::size_t at, std::endian order) {
   std::array<char, sizeof(Number)> raw;
@@ -24,7 +24,7 @@ Number value_at(std::string_view bytes, std::size_t at, std::endian order) {
   if (order != std::endian::native) std::reverse(raw.begin(), raw.end());
   return std::bit_cast<Number>(raw);
 }
-/// Returns the bytes of a number in this order.
+/// Returns the bytes of a number in this byte order.
 template <class Number>
 std::array<char, sizeof(Number)> bytes_of(Number value, std::endian order) {
   auto bytes = std::bit_cast<std::array<char, sizeof(Number)>>(value);

@@ -13,8 +13,7 @@ inline std::string_view without_plus(std::string_view word) {
   return word.size() > 1 && word[0] == '+' && word[1] != '-' && word[1] != '+' ? word.substr(1) : word;
 }
 
-/// Returns whether the magnitude of this decimal number, known to be out of range, is too small rather than
-/// too large.
+/// Returns whether a decimal number that a double cannot hold is too close to 0; false: it is too large.
 inline bool underflows(std::string_view word) {
   const std::size_t exponent = word.find_first_of("eE");
   return exponent == std::string_view::npos ? word.substr(0, 2) == "0." || word.substr(0, 3) == "-0."

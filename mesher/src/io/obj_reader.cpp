@@ -91,8 +91,8 @@ void require_in_range(const std::string& path, const ObjElement& element, std::i
       .fail(fmt::format("a corner is vertex {}, but the file has {} vertices", corner + 1, size));
 }
 
-/// Returns the tags of the faces: by groups, if there are several or one has a name of ours, otherwise by
-/// materials.
+/// Returns the tags of the faces: by groups if there are several groups or one has a name of ours, otherwise
+/// by materials.
 std::vector<Tag> tags_of_faces(const Elements& elements, PolygonSoup& soup) {
   std::set<std::size_t> groups, materials;
   for (const ObjElement& element : elements.list) {

@@ -30,7 +30,8 @@ using Corners = std::array<Index, 4>;
 
 std::size_t count_corners(const Corners& corners) { return corners[3] == none ? 3 : 4; }
 
-/// A side of a cell, with its corners counterclockwise from outside, and the cell in front of it, or none.
+/// A side of a cell, its owner; the corners are counterclockwise for a viewer outside the owner. The
+/// neighbour is the cell on the other side, or none.
 struct Side {
   Corners corners;
   Index owner = none, neighbour = none;
@@ -83,7 +84,7 @@ struct Sides {
     pair_up(all);
   }
 
-  /// Joins the two sides of each face: the owner has the smaller number.
+  /// Joins the two sides of each inner face: the cell with the smaller number becomes the owner.
   void pair_up(std::vector<Side>& all) {
     const auto key = [](const Side& side) {
       const auto& [a, b, c, d] = side.corners;  // a is the smallest, d often none

@@ -37,7 +37,7 @@ struct Members {
   std::size_t own_tets = 0;
 };
 
-/// Returns the members by partition, without the points.
+/// Returns the cells of each partition; does not fill in the points.
 std::vector<Members> members_by_partition(const TetMesh& mesh, const std::vector<Index>& numbers,
                                           bool with_ghosts) {
   std::vector<Members> members(numbers.size());
@@ -170,7 +170,7 @@ void declare(FileWriter& out, std::string_view section, std::span<const VtkArray
   out << "    </P" << section << ">\n";
 }
 
-/// Writes the .pvtu file. `like` is any of the pieces, all of which have the same arrays.
+/// Writes the .pvtu file. `like` is any one of the pieces, because all have the same arrays.
 void write_list(const std::string& path, const VtkGrid& like, const std::vector<std::string>& pieces,
                 bool with_ghosts) {
   FileWriter out(path);

@@ -10,15 +10,15 @@
 
 namespace collarmesh::io {
 
-/// A side of the cell of a volume.
+/// A side of a cell with volume.
 struct SideOfCell {
   CellKind kind = CellKind::tet;
   Index cell = none;
   std::size_t side = 0;  ///< place in the shape's sides
 };
 
-/// Calls `call(side, face, behind)` for each side of a volume that is one of these triangles or quadrangles.
-/// `behind`: the face's normal points away from the cell.
+/// Calls `call(side, face, behind)` for each side of a cell with volume that is one of these triangles or
+/// quadrangles. `behind`: whether the cell is behind the face, so that the normal points away from the cell.
 template <std::size_t n, class Call>
 void for_each_side_among(const std::vector<std::array<Index, n>>& faces, const TetMesh& mesh,
                          const Call& call) {
@@ -50,7 +50,7 @@ void for_each_listed_side(const TetMesh& mesh, CellKind kind, const Call& call) 
     for_each_side_among(mesh.layers.quads, mesh, call);
 }
 
-/// Finds a side for each triangle or quadrangle, preferably the one of the cell behind it.
+/// Finds for each triangle or quadrangle a side of a cell there, preferably of the cell behind it.
 inline std::vector<SideOfCell> sides_of_faces(const TetMesh& mesh, CellKind kind = CellKind::triangle) {
   std::vector<SideOfCell> found(count_of(mesh, kind));
   for_each_listed_side(mesh, kind, [&](const SideOfCell& side, Index face, bool behind) {

@@ -27,7 +27,8 @@ bool equal_ignoring_case(std::string_view a, std::string_view lower) {
   return true;
 }
 
-/// Returns whether the size is that of a binary file with the count of triangles in its header.
+/// Returns whether the size of the file is that of a binary one with the number of triangles that its header
+/// gives.
 bool has_binary_size(std::string_view bytes) {
   if (bytes.size() < header_bytes) return false;
   const std::uint32_t count = ByteReader("", bytes.substr(80)).get<std::uint32_t>("");

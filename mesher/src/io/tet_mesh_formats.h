@@ -58,7 +58,8 @@ TetMesh read_medit_cells(const std::string& path);
 
 PointField read_vtu_field(const std::string& path, const std::string& name);
 PointField read_msh_field(const std::string& path, const std::string& name);
-/// Returns which of these fields to read; the only one if none is asked for by name. Throws ReadError.
+/// Returns the index of the field to read: the one with the name `wanted` or, if that is empty, the only one.
+/// Throws ReadError.
 std::size_t choose_field(const std::string& path, const std::vector<std::string>& names,
                          const std::string& wanted);
 

@@ -37,7 +37,7 @@ class CellFile {
     return nodes.from_order(order);
   }
 
-  /// Reads a tag: region attributes are real numbers.
+  /// Reads a tag, which may be written as a real number, as attributes of regions are.
   Tag read_tag() {
     if (scan_.at_line_end()) return 0;
     const double value = scan_.coordinate("a marker or attribute");

@@ -101,7 +101,7 @@ class TextScanner {
   std::size_t line_;
 };
 
-/// Quotes a piece of a file for a message: short, printable.
+/// Returns a piece of a file in quotes for a message: cut off if long, with printable characters only.
 std::string in_quotes(std::string_view text);
 
 }  // namespace collarmesh::io

@@ -152,7 +152,8 @@ class UnvReader {
     return node;
   }
 
-  /// Reads groups. `long_members` have type, number, node and component, others type and number.
+  /// Reads groups. `long_members`: whether each member has type, number, node and component, not only type
+  /// and number.
   void read_groups(bool long_members) {
     while (!at_mark()) {
       scan_.integer("the number of a group");

@@ -34,7 +34,7 @@ class Stored {
  public:
   Stored(std::string_view text, bool base64) : text_(text), base64_(base64) {}
 
-  /// Returns an upper bound of the bytes left.
+  /// Returns an upper bound of the number of bytes left.
   std::size_t left() const { return base64_ ? text_.size() / 4 * 3 : text_.size(); }
 
   /// Takes bytes. In base64 a run of bytes ends with its own padding.
@@ -74,7 +74,8 @@ std::uint64_t header_number(std::string_view header, std::size_t i, const VtkSto
                                    : value_at<std::uint32_t>(header, 4 * i, storage.order);
 }
 
-/// Decodes the number of bytes, then the bytes themselves; some writers encode the number separately.
+/// Decodes the number of bytes, then the bytes themselves. Some writers encode the number as a base64 text of
+/// its own.
 std::string decode_plain(Stored& stored, const VtkStorage& storage) {
   const std::string header = stored.peek(storage.header_bytes);
   if (header.size() < storage.header_bytes)
@@ -99,8 +100,8 @@ void unpack_block(VtkCompression compression, std::string_view packed, std::uint
     throw VtkArrayError{"a compressed block is damaged"};
 }
 
-/// Decodes the number of blocks, their size, the size of the last one if it is smaller, the compressed sizes;
-/// then the blocks.
+/// Decodes the header (number of blocks, their size, size of the last one if it is smaller, compressed
+/// sizes), then the blocks.
 std::string decode_compressed(Stored& stored, const VtkStorage& storage) {
   const std::string first = stored.peek(storage.header_bytes);
   if (first.size() < storage.header_bytes)

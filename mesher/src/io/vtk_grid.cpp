@@ -33,7 +33,7 @@ constexpr PerKind<std::array<std::uint8_t, 2>> vtk_types{{{{10, 24},    // tets
                                                            {9, 23},     // quadrangles
                                                            {3, 21}}}};  // edges
 
-/// Makes one value per cell.
+/// Returns the values `of_cell(kind, i)` of all cells, in the order of the kinds.
 template <class T, class OfCell>
 std::vector<T> per_cell(const TetMesh& mesh, const OfCell& of_cell) {
   std::vector<T> values;
@@ -43,7 +43,7 @@ std::vector<T> per_cell(const TetMesh& mesh, const OfCell& of_cell) {
   return values;
 }
 
-/// Returns the value of a tet, and 0 for other cells.
+/// Returns a function that gives the values of tets, and 0 for other cells.
 template <class Values>
 auto of_tets(const Values& values) {
   return [&values](CellKind kind, std::size_t i) {
@@ -51,12 +51,12 @@ auto of_tets(const Values& values) {
   };
 }
 
-/// Replaces infinity, which not all programs accept.
+/// Limits a value to the largest float, because not all programs accept infinity.
 float finite(double value) {
   return static_cast<float>(std::min(value, double{std::numeric_limits<float>::max()}));
 }
 
-/// A maker of a grid's arrays, several at once.
+/// A maker of a grid's arrays. Several threads fill different arrays at once.
 class GridMaker {
  public:
   explicit GridMaker(const TetMesh& mesh) : mesh_(mesh) {
@@ -82,7 +82,7 @@ class GridMaker {
  private:
   static constexpr std::size_t tets_per_task = 1024;
 
-  /// Adds an array at its place and fills it with the values that `values` returns.
+  /// Names an array, and adds a task that fills it with the values that `values()` returns.
   template <class Values>
   void add(VtkArray& array, std::string_view name, Values values) {
     array.name = name;
@@ -177,7 +177,7 @@ class GridMaker {
     });
   }
 
-  /// Adds the measures, which take longest.
+  /// Adds the measures of tets in many tasks, because they take longest.
   void add_measures() {
     std::array<float*, 3> of_cells{};
     for (std::size_t k = 0; k < of_cells.size(); ++k) {

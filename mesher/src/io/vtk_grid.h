@@ -30,10 +30,10 @@ struct VtkArray {
 };
 
 /// Cells: those of volumes (tets, prisms, pyramids), then faces (triangles, quadrangles), then curve edges.
-/// Cell arrays, each defined for all of them:
+/// Cell arrays, with a value for every cell:
 ///   region                    of a volume; of a face the one behind it, or in front if none is behind
 ///   region_back, region_front of a face: TetMesh::face_regions; of a volume both its region
-///   tag                       of the region, patch or curve
+///   tag                       of the cell's region, patch or curve
 ///   feature                   index of the patch or curve in the complex; -1: unknown or a volume
 ///   collar, crease            TetMesh::tet_collar, TetMesh::tet_crease; 0 for other cells
 ///   thin                      TetMesh::tet_thin, if there is any; 0 for other cells
@@ -74,11 +74,11 @@ std::string names_of(const std::vector<std::int64_t>& bytes);
 
 /// Returns the name of the values' type in .vtu files: "Float64".
 std::string_view vtu_type(const VtkArray& array);
-/// Writes a grid as a .vtu file. Its connectivity, offsets and types are moved out. Arrays named
+/// Writes a grid as a .vtu file; takes connectivity, offsets and types out of the grid. Arrays named
 /// `vtk_point_ids` or `vtk_cell_ids` become the grid's GlobalIds. Throws WriteError.
 void write_vtu_grid(const std::string& path, VtkGrid& grid, const std::vector<VtkArray>& field_data);
 
-/// A part of a file that is being read.
+/// A piece of a grid that is being read.
 struct VtkPiece {
   using Arrays = std::map<std::string, std::vector<std::int64_t>, std::less<>>;
   std::vector<Point> points;

@@ -162,7 +162,7 @@ class LegacyReader {
     wanted_ = wanted;
   }
 
-  /// Reads an attribute. Returns false if the name is of no attribute.
+  /// Reads an attribute with this keyword. Returns false if it is no keyword of an attribute.
   bool read_attribute(const std::string& name) {
     if (name == "scalars")
       read_scalars();
@@ -303,7 +303,7 @@ class LegacyReader {
 
   std::string keyword(std::string_view what) { return lower_case(scan_.word(what)); }
 
-  /// Throws ReadError; a line number says little in a binary file.
+  /// Throws ReadError with the line or, in a binary file, the byte.
   [[noreturn]] void fail(const std::string& message) const {
     if (!binary_) scan_.fail(message);
     throw ReadError(fmt::format("{}: byte {}: {}", path_, scan_.offset(), message));

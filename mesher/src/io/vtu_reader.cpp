@@ -41,7 +41,8 @@ class VtuFile {
     return node;
   }
 
-  /// Returns the values of an array. `count` is the required number; any number if not given.
+  /// Returns the values of an array. `count`: the number that it must have; by default it may have any
+  /// number.
   template <class T>
   std::vector<T> values(const pugi::xml_node& array, std::size_t count = any) const {
     const NumberType type = vtk_type(array.attribute("type").value());
@@ -199,7 +200,7 @@ class VtuFile {
     }
   }
 
-  /// Limits memory: the arrays of many pieces could refer to the same bytes of the file.
+  /// Limits memory: a small file could have many arrays that all refer to the same bytes.
   void require_room(std::size_t decoded) const {
     decoded_ += decoded;
     if (decoded_ > text_.size() * (storage_.compression == VtkCompression::none ? 1 : vtk_largest_ratio))

@@ -260,7 +260,8 @@ void Core::find_around(const std::vector<Index>& near) {
   });
 }
 
-/// Moves the vertices near the front along with it: each by the mean of its neighbours' moves.
+/// Finds the moves of vertices near the front, which follow it: each moves by the mean of its neighbours'
+/// moves.
 void Core::spread(std::vector<Vector>& moves, const std::vector<Index>& near) const {
   std::vector<Vector> next(near.size());
   for (unsigned sweep = 0; sweep < sweeps; ++sweep) {
@@ -279,7 +280,7 @@ void Core::spread(std::vector<Vector>& moves, const std::vector<Index>& near) co
   }
 }
 
-/// Keeps a vertex on its planar patch; vertices on curved patches do not move.
+/// Restricts a move so that the vertex stays on its planar patch. Vertices on curved patches do not move.
 void Core::constrain(Index vertex, Vector& move) const {
   const auto& [dimension, feature] = mesh_.features[vertex];
   if (dimension == 3) return;
@@ -332,9 +333,9 @@ std::vector<double> Core::shares_of(const std::vector<Vector>& moves, const std:
   }
 }
 
-/// Improves tets below this angle: first replaces them only by tets within their bounds, then replaces poor
-/// tets by any better ones. (A better tet may still miss its bound, because bounds are lower at creases and
-/// forced edges than beside them.) `thoroughly`: also by slow means.
+/// Improves tets with smaller angles than this: first replaces them only by tets within their bounds, then
+/// replaces poor tets by any better ones. (A better tet may still miss its bound, because bounds are lower at
+/// creases and forced edges than beside them.) `thoroughly`: also by slow means.
 void Core::improve_tets(double angle, bool thoroughly) {
   piece_->leave({});
   improve_by(angle, thoroughly, no_ratio);

@@ -45,10 +45,10 @@ struct CurvedLayers {
   std::vector<Index> folded;
 };
 
-/// Gives a mesh with layers nodes of second order. Edges of walls keep their bulges, which fade towards the
-/// core. The core gets its nodes as any mesh does, but keeps its tets. Where cells would fold, edges above
-/// the walls get straighter. `may_move_walls`: if that is not enough, edges of walls get straighter, too, and
-/// the report lists their nodes; otherwise such cells stay folded.
+/// Gives a mesh with layers nodes of second order. Edges of walls keep their bulges, and edges above them get
+/// bulges that fade towards the core. The core gets its nodes as any mesh does, but keeps its tets. Where
+/// cells would fold, edges above the walls get straighter. `may_move_walls`: if that is not enough, edges of
+/// walls get straighter, too, and the report lists their nodes; otherwise such cells stay folded.
 CurvedLayers curve(TetMesh& mesh, const Plc& plc, const Bulges& bulges, const PlacesInLayers& places,
                    const SecondOrderOptions& options, const Execution& execution, bool may_move_walls);
 

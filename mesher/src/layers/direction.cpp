@@ -4,8 +4,8 @@
 // cosine to the one with the smallest.
 //
 // Where walls meet sharply, uses Gilbert's algorithm, which only adds weight. After the same number of steps
-// its result is nearer to the mean of the normals. In such places, layers along this direction become higher
-// and cover more than along the steepest one.
+// its result is nearer to the mean of the normals than that of the other method. In such places, layers along
+// this direction become higher and cover more than along the steepest one.
 #include "layers/direction.h"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ constexpr double direction_precision = 1e-6;
 constexpr double narrow = 0.6;
 // The direction from means of normals is used if its least cosine exceeds this share of the best one's.
 constexpr double steep_enough = 0.85;
-// Two planes, or two lines, count as the same if the sine of the angle between them is smaller.
+// Two planes, or two lines, count as the same if the sine of the angle between them is at most this.
 constexpr double parallel = 1e-4;
 // Lines may leave planes by this sine, because the normals of curved patches are means over triangles.
 constexpr double nearly_parallel = 0.02;

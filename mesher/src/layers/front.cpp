@@ -118,8 +118,8 @@ void Front::find_nodes() {
         find_sector(v, side.tet, sector);
 }
 
-/// Finds the tets at a vertex that are connected without passing a wall, and the faces and edges without
-/// layers there.
+/// Finds the tets at a vertex that are connected to this tet without passing a wall, and the faces and edges
+/// without layers there.
 void Front::find_sector(Index vertex, Index tet, std::vector<Index>& sector) {
   const auto node = static_cast<Index>(nodes.size());
   nodes.emplace_back().vertex = vertex;

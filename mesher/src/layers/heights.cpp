@@ -25,7 +25,8 @@ constexpr double of_shared_gap = 0.3, of_gap = 0.5;
 // The least Jacobian in a stack, relative to the largest one.
 constexpr double least_jacobian_share = 0.15;
 constexpr double largest_step_of_neighbours = 2, rounding = 1e-9;
-// Stacks lower than this share of the height that is asked for, or that gaps allow, are left out.
+// Stacks lower than this share of the height that is asked for, or of the height that gaps allow if that is
+// less, are left out.
 constexpr double least_share = 0.01;
 // Edges of the wall may bulge to at most this share of the layers' height.
 constexpr double most_bulging = 0.4;
@@ -228,7 +229,7 @@ double Heights::relative_jacobian(const WallSide& side) const {
   return least / largest;
 }
 
-/// Lowers the stacks whose cells fold. `strictly`: leaves them out.
+/// Lowers the stacks whose cells fold; leaves them out if `strictly`. Returns whether any cells fold.
 bool Heights::unfold(bool strictly) {
   std::vector<std::uint8_t> folded(front_.sides.size(), 0);
   parallel_for_ranges(folded.size(), nodes_at_once, [&](std::size_t first, std::size_t last) {

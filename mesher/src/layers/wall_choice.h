@@ -14,8 +14,8 @@ namespace collarmesh::layering {
 /// The layers that the options ask for, by patch of a complex.
 class WallChoice {
  public:
-  /// Throws OptionError if a wall does not exist or gets layers twice, if a text puts layers on none, or if
-  /// first layers would be too thin for the shape's coordinates.
+  /// Throws OptionError if a wall does not exist or gets layers twice, if a text puts layers on no patch, or
+  /// if first layers would be too thin for the shape's coordinates.
   WallChoice(const LayerOptions& options, const Plc& plc);
 
   bool is_wall(Index patch) const { return patch != none && wall_of_[patch] != none; }

@@ -59,7 +59,7 @@ class SegmentBundle {
   const Point& from(Index segment) const { return points_[segments_[segment][0]]; }
   const Point& to(Index segment) const { return points_[segments_[segment][1]]; }
   std::size_t part_count() const { return (segments_.size() + part_size - 1) / part_size; }
-  /// Returns all segments of a part.
+  /// Returns the mask of all segments of a part.
   Mask all(std::size_t part) const {
     const std::size_t count = std::min(part_size, segments_.size() - part * part_size);
     return ~Mask{0} >> (part_size - count);

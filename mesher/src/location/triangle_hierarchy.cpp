@@ -10,7 +10,7 @@ namespace collarmesh {
 
 namespace {
 
-// Returns whether the box lies on one side of the triangle's plane. Conservative: rounding changes the
+// Returns whether the box lies on one side of the triangle's plane; false in doubt. Rounding changes the
 // compared terms by some 16 * 2^-53 of the product of sums below, and the slack is 1e-14 of that product.
 bool misses_plane(const CentredBox& box, const std::array<Point, 3>& t) {
   const auto sum = [](const Vector& v) { return std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z); };
@@ -35,8 +35,8 @@ int passes(const Point& p, const Point& q, const Point& a, const Point& b) {
 // Returns whether a triangle stands for a segment or point: its last two corners are equal.
 bool is_segment(const std::array<Point, 3>& t) { return t[1] == t[2]; }
 
-// Returns whether the box misses the triangle. Conservative. Boxes around oblique segments exclude little: a
-// point among a thousand long segments may be in hundreds of boxes.
+// Returns whether the box misses the triangle; false in doubt. Segments have a test of their own, because
+// boxes around oblique ones exclude little: a point among long segments may be in many of their boxes.
 bool misses(const CentredBox& box, const std::array<Point, 3>& t) {
   return is_segment(t) ? !SegmentAgainstBoxes(t[0], t[1]).may_meet(box) : misses_plane(box, t);
 }

@@ -58,8 +58,8 @@ class TriangleHierarchy {
 
   /// Replaces `found` by the nodes whose boxes meet the box, each at the coarsest level whose extent does not
   /// exceed `extent`, and by larger triangles whose boxes and planes meet the box. Precondition: the nodes of
-  /// `from` cover every triangle that meets the box. Conservative: a node found may contain no triangle that
-  /// meets the box. Cost: linear in the nodes found plus the levels between them and `from`.
+  /// `from` cover every triangle that meets the box. A node found may contain no triangle that meets the box.
+  /// Cost: linear in the nodes found plus the levels between them and `from`.
   void nodes_meeting(const Box& box, double extent, std::span<const Index> from, Marks& marks,
                      std::vector<Index>& found) const;
 
@@ -108,8 +108,8 @@ class TriangleHierarchy {
   template <class Counts>
   Index triangle_within(const Point& p, double bound, Index hint, const Counts& counts) const;
 
-  /// Visits triangles below `nodes`, near ones first, as long as their boxes are nearer to p than the bound.
-  /// The visitor may lower the bound.
+  /// Visits triangles below `nodes`, near ones first, as long as the squared distances of their boxes from p
+  /// are below the bound. The visitor may lower the bound.
   template <class Visit>
   void visit_near(std::span<const Index> nodes, const Point& p, const double& squared_bound,
                   const Visit& visit) const {

@@ -109,9 +109,9 @@ Cubic jacobian(const CurvedTet& p, double& error) {
           sum += determinant(d[0][u], d[1][v], d[2][w]);
         cubic.at(i, j, k) = 8.0 / 6 * sum;
       }
-  // Rounding: a difference of Bezier points is off by at most 10 e times the largest coordinate. A
-  // determinant is off by at most three such errors times the square of the longest difference, plus its own
-  // rounding.
+  // Rounding: a coordinate of a difference of Bezier points is off by at most 10 epsilon times the largest
+  // coordinate, and the difference by at most 20. A determinant is off by at most three such errors times the
+  // square of the longest difference, plus its own rounding.
   error = 8 * epsilon * longest * longest * (60 * largest + 20 * longest);
   return cubic;
 }

@@ -13,8 +13,9 @@ namespace collarmesh {
 
 namespace {
 
-/// Returns the derivatives of x in the barycentric coordinates lambda. In the derivative in lambda_i, corner
-/// i has the weight 4 lambda_i - 1; the mid-edge node of an edge ij has the weight 4 lambda_j.
+/// Returns the derivatives of the position in a shape with nodes x by its barycentric coordinates, at lambda.
+/// In the derivative by lambda_i, corner i has the weight 4 lambda_i - 1; the mid-edge node of an edge ij has
+/// the weight 4 lambda_j.
 template <std::size_t corners, std::size_t nodes>
 std::array<Vector, corners> derivatives(const std::array<Point, nodes>& x,
                                         const std::array<std::array<unsigned, 2>, nodes - corners>& edges,
@@ -147,8 +148,8 @@ ShapeMeasures measures_of(const Plc& plc) {
   return measures;
 }
 
-// Computes the integral of the determinant, a cubic polynomial, by the rule with five points, which is exact
-// for it (Keast, Moderate-degree tetrahedral quadrature formulas, 1986).
+// Integrates the Jacobian determinant, a cubic polynomial, by the rule with five points, which is exact for
+// it (Keast, Moderate-degree tetrahedral quadrature formulas, 1986).
 double volume(const CurvedTet& nodes) {
   double sum = -0.8 * six_jacobian(nodes, {0.25, 0.25, 0.25, 0.25});
   for (unsigned i = 0; i < 4; ++i) {
@@ -159,8 +160,8 @@ double volume(const CurvedTet& nodes) {
   return sum / 6;
 }
 
-// Uses six points (Dunavant, High degree efficient symmetrical Gaussian quadrature rules for the triangle,
-// 1985).
+// Integrates by six points (Dunavant, High degree efficient symmetrical Gaussian quadrature rules for the
+// triangle, 1985).
 double area(const CurvedTriangle& nodes) {
   double sum = 0;
   for (const auto& [weight, twice] :

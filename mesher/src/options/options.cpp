@@ -108,7 +108,7 @@ void require(bool holds, const std::string& message) {
   if (!holds) throw OptionError(message);
 }
 
-/// Throws OptionError if an option has a value other than the one that the profile sets.
+/// Throws OptionError if an option has a value that is neither its default nor the one that the profile sets.
 void require_as_profile_sets(const RunOptions& options) {
   const RunOptions set = with_profile(options), defaults;
   for (const Option& option : option_table()) {

@@ -23,7 +23,8 @@ constexpr Kind kind_of(bool has_words) {
   return std::is_same_v<T, std::vector<std::string>> ? Kind::texts : Kind::sizes;
 }
 
-/// Access to a member of RunOptions, or of a struct in it. A choice has words.
+/// Access to a member of RunOptions, or of a struct in it. `has_words`: the member is an enumeration whose
+/// values the option gives as words.
 template <bool has_words, auto... members>
 struct At {
   static auto& of(auto& options) { return (options.*....*members); }

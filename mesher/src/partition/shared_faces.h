@@ -11,7 +11,7 @@
 
 namespace collarmesh {
 
-/// Calls `found(t, u)` once for each triangle that two tets share, grouped by the triangles' smallest
+/// Calls `found(t, u)` once for each triangle that two tets share, in the order of the triangles' smallest
 /// vertices. Cost: linear; temporarily 48 bytes per tet.
 template <class Found>
 void for_each_shared_face(const TetMesh& mesh, const Found& found) {

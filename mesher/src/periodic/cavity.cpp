@@ -10,7 +10,8 @@
 namespace collarmesh::periodicity {
 
 // Makes the cavity of all tets at a simplex, whose vertices `is_of` accepts. Sides that contain the simplex
-// are removed, with the faces on them, whose outer edges form the rim. Other sides form the hull.
+// are removed, with the faces on them. The edges opposite the simplex in these faces form the rim; the sides
+// opposite its vertices form the hull.
 template <class IsOf>
 Cavity CavityEditor::cavity_of(std::vector<Index> tets, const IsOf& is_of) const {
   Cavity cavity;

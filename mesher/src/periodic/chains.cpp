@@ -15,7 +15,7 @@ constexpr double near = 0.3;  // relative to the length of the edges at a node: 
                               // moved there
 constexpr double good_removal = 0.3;  // quality that a removal must leave; otherwise the node is kept and
                                       // inserted on the pair's other curve
-constexpr double good_enough = 0.1;   // quality that a move or a removal must leave
+constexpr double good_enough = 0.1;   // quality that a move must leave unless tets are poorer already
 
 /// Follows the edges of one curve.
 Chain follow(std::vector<std::array<Index, 2>> edges, Index start) {

@@ -28,11 +28,12 @@ struct ChainChange {
   std::vector<Point> stuck;  ///< places of nodes that could not be removed
 };
 
-/// Gives the chain of a curve nodes at exactly these places: between its ends, or all nodes if it is closed.
+/// Gives the chain of a curve nodes at exactly these places, apart from the nodes at its ends, which stay.
 /// Moves nodes that are near a place, inserts new nodes, and removes the rest. Nodes that cannot be removed
 /// stay.
 ChainChange put_nodes(CavityEditor& editor, Index curve, Chain& chain, std::span<const Point> places);
-/// Adds nodes to the chain at these places; all other nodes stay. Appends the new nodes to `nodes`.
+/// Gives the chain nodes at these places: moves nodes that are near a place, and inserts new ones. All other
+/// nodes stay. Appends the nodes at these places, and those at vertices of the complex, to `nodes`.
 ChainChange add_nodes(CavityEditor& editor, Index curve, Chain& chain, std::span<const Point> places,
                       std::vector<Index>& nodes);
 

@@ -16,8 +16,8 @@ struct FeatureImages {
 
 /// Finds the images. A vertex must be at the place of its image except for the rounding of the input; curves
 /// that are not straight must be within `distance` of their images. Throws OptionError if a feature has no
-/// image: the message names the feature, the largest distance and its place. Cost: the product of the numbers
-/// of curves of both groups, for comparing boxes.
+/// image: the message names the feature, the place of its image and the distance of the nearest candidate.
+/// Cost: the product of the numbers of curves of both groups, for comparing boxes.
 FeatureImages find_images(const PatchPair& pair, const Plc& plc, double distance);
 
 /// A curve, and the motion that takes the original curve onto it.
@@ -31,8 +31,8 @@ struct CurveClass {
   std::vector<CurveImage> images;
 };
 
-/// Returns the curves that are images of one another by one or several pairs, like the edges of a periodic
-/// cell.
+/// Returns the classes of curves that are images of one another by one or several pairs, like parallel edges
+/// of a periodic cell.
 std::vector<CurveClass> curve_classes(const std::vector<PatchPair>& pairs,
                                       const std::vector<FeatureImages>& images, std::size_t curves);
 

@@ -18,8 +18,8 @@ namespace {
 constexpr double near_in_patch = 0.25;
 constexpr double good_patch_removal = 0.3;    // quality that a removal must leave; otherwise the node is kept
                                               // and inserted on the pair's other patch
-constexpr double good_enough_in_patch = 0.1;  // quality that a move or a removal must leave if there may be
-                                              // another way
+constexpr double good_enough_in_patch = 0.1;  // quality that a move must leave unless tets are poorer
+                                              // already
 constexpr double fair_flip = 0.02;            // quality that an edge flip must leave if it is optional
 
 }  // namespace

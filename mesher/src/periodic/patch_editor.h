@@ -26,15 +26,16 @@ class PatchEditor {
   PatchEditor(CavityEditor& editor, const Plc& plc, Index patch, std::span<const Index> faces);
 
   /// Gives the interior of the patch nodes at exactly these places: moves nodes that are near a place,
-  /// inserts new nodes, and removes the rest if that leaves good tets. Returns the node at each place.
+  /// inserts new nodes, and removes the rest if that leaves good tets. Returns the node at each place; none
+  /// if it could not be made.
   std::vector<Index> put_nodes(std::span<const Point> places);
   /// Returns the places of the nodes that could not be removed.
   std::vector<Point> places_of_others() const;
-  /// Adds nodes at these places; all other nodes stay. Returns the node at each place.
+  /// Adds nodes at these places and returns them, as `put_nodes` does; all other nodes stay.
   std::vector<Index> add_nodes(std::span<const Point> places);
-  /// Flips edges until the patch has these edges, as long as all new tets are better than `least`. The ends
-  /// must be nodes of the patch. If `must`, inserts vertices below the patch to make room. Returns the number
-  /// of missing edges.
+  /// Flips edges until the patch has these edges, as long as all new tets have a quality above `least`. The
+  /// ends must be nodes of the patch. If `must`, inserts vertices below the patch to make room. Returns the
+  /// number of missing edges.
   std::size_t make_edges(std::span<const Edge> edges, double least, bool must);
   /// Returns the edges of the patch, the smaller node of each first.
   std::vector<Edge> edges() const;

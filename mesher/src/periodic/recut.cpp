@@ -163,7 +163,7 @@ Motion Recut::motion_of(Shift shift) const {
   return motion;
 }
 
-// Returns the place of a vertex on a seam. A vertex that is moved onto its image becomes that image.
+// Returns the place of a vertex. If the vertex is moved onto its image on a seam, that image takes its place.
 Recut::Place Recut::on_seam(Place place) const {
   for (std::size_t k = 0; k < seams_.size(); ++k) {
     if ((place.shift >> k & 1U) == 0) continue;

@@ -17,9 +17,9 @@
 
 namespace collarmesh::periodicity {
 
-/// A periodic mesh cut open elsewhere. The tets beside one group of each pair are moved behind the other
-/// group, so that both groups become one patch inside the mesh, with tets on both sides. A change there fits
-/// both sides. The vertices at the new cuts do not move.
+/// A periodic mesh joined at its pairs and cut open elsewhere. The tets beside one group of each pair are
+/// moved behind the other group, so that both groups become one patch inside the mesh, with tets on both
+/// sides. A change there fits both sides. The vertices at the new cuts do not move.
 class Recut {
  public:
   /// The tets that are moved: those much nearer to the first (or second) group than to the other one, or all
@@ -32,7 +32,7 @@ class Recut {
   Recut(const TetMesh& mesh, const Plc& plc, const SurfaceTolerance& tolerance,
         const std::vector<PatchPair>& pairs, const std::vector<FeatureImages>& images, Moved moved);
 
-  /// Returns the mesh; its patches, curves and vertices are those of the tiled complex.
+  /// Returns the recut mesh; its patches, curves and vertices are those of the tiled complex.
   TetMesh& mesh() { return made_; }
   const TiledComplex& complex() const { return *complex_; }
   /// Returns the vertices that must stay.
@@ -45,8 +45,8 @@ class Recut {
 
   /// Removes the entries of vertices that the complex has lost. Call it before the complex is stored.
   void note_vertices(const remeshing::TetComplex& complex);
-  /// Returns the mesh, cut at the faces of the pairs again, without a map. Precondition: the complex is
-  /// stored.
+  /// Returns the mesh cut at the faces of the pairs again, without a map of their nodes. Precondition: the
+  /// complex is stored.
   TetMesh back() const;
 
  private:

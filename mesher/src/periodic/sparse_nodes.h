@@ -14,8 +14,8 @@ struct SpacedPlace {
 };
 
 /// Chooses nodes inside a planar patch of a refined mesh, so that their distances are at least a small share
-/// of the target edge length. Refinement may leave nodes far nearer to each other, and fixing all nodes would
-/// keep these. On the patch's borders, lengths are at most those of the border's edges; away from the
+/// of the target edge length. Refinement may leave nodes far nearer to each other, and they would stay so if
+/// all were fixed. On the patch's borders, lengths are at most those of the border's edges; away from the
 /// borders, this limit grows by half of the distance. `targets`: target edge length at every vertex. Cost: n
 /// log n in the faces, times the number of nodes that one node covers.
 std::vector<SpacedPlace> sparse_nodes(const TetMesh& mesh, std::span<const Index> faces,

@@ -26,7 +26,7 @@ std::vector<Sample> samples_on(const Plc& plc, Index curve, const SurfaceToleran
   return samples;
 }
 
-/// Adds the moved samples of `from` where the nearest sample of `to` has a larger tolerance.
+/// Adds to `smaller` each moved sample of `from` whose nearest sample of `to` has a larger tolerance.
 void compare(const std::vector<Sample>& from, const std::vector<Sample>& to, const Motion& motion,
              std::vector<Sample>& smaller) {
   for (const Sample& sample : from) {

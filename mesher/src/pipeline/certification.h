@@ -9,11 +9,12 @@ namespace collarmesh::pipeline {
 /// Returns whether a finding says that a tet misses the bounds on its shape.
 bool is_about_shape(const Finding& finding);
 
-/// Returns whether all missed guarantees may hold with a smaller surface distance.
+/// Returns whether guarantees are missed, but only those on volumes and thicknesses, which may hold with a
+/// smaller surface distance.
 bool misses_volumes_only(const CheckReport& check);
 
-/// Returns the number of tets that miss the bounds on their shapes, plus, with a far larger weight, the
-/// number of nodes, edges and faces of periodic pairs that have no image.
+/// Returns the number of findings on shapes of tets, plus 1000 times the number of findings on nodes, edges
+/// and faces of periodic pairs that have no image.
 std::size_t count_misshapen(const MeshJob& job, const TetMesh& mesh);
 
 /// Checks the mesh against the bounds that the options ask for and against this tolerance of its complex.

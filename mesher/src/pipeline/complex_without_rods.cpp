@@ -7,7 +7,8 @@ namespace collarmesh::pipeline {
 
 namespace {
 
-/// Returns the numbers of the features that are kept, and sets their new numbers.
+/// Returns the old numbers of the features that are kept, in order. Sets `numbers` to the new numbers, by old
+/// number; none for dropped features.
 std::vector<Index> kept(const std::vector<bool>& dropped, std::vector<Index>& numbers) {
   std::vector<Index> kept;
   numbers.assign(dropped.size(), none);
@@ -19,7 +20,7 @@ std::vector<Index> kept(const std::vector<bool>& dropped, std::vector<Index>& nu
   return kept;
 }
 
-/// Renumbers sorted features, and leaves out those that are dropped.
+/// Gives sorted features their new numbers, and leaves out those that are dropped.
 void renumber(std::vector<Index>& features, const std::vector<Index>& numbers) {
   for (Index& feature : features) feature = numbers[feature];
   std::erase(features, none);

@@ -21,7 +21,8 @@ struct ComplexWithoutRods {
   SurfaceTolerance tolerance_from(const SurfaceTolerance& whole) const;
 };
 
-/// Returns the complex without these rods; nothing if their ends share vertices with other features.
+/// Returns the complex without these rods; nothing if a vertex on the curve around a rod's end lies also on a
+/// curve that stays.
 std::optional<ComplexWithoutRods> complex_without_rods(const Plc& whole,
                                                        const std::vector<SheathedRod>& rods);
 

@@ -47,15 +47,15 @@ void fill(MeshJob& job, const Plc& plc) {
       [&](const Execution& watched) { job.made.result.mesh = constrained_tetrahedra(plc, watched).mesh; });
 }
 
-/// Returns whether one size is asked for everywhere, by the options and by the complex.
+/// Returns whether neither the options nor the complex ask for different sizes at different places.
 bool has_one_size(const MeshOptions& asked, const Plc& plc) {
   return std::ranges::none_of(plc.regions, [](const Plc::Region& region) { return region.size > 0; }) &&
          asked.region_size.empty() && asked.patch_size.empty() && asked.curve_size.empty() &&
          !asked.size_field && asked.elements_per_circle == 0 && asked.elements_across_gap == 0;
 }
 
-/// Returns whether ladders may help: in shells far thinner than the size, if one size is asked for
-/// everywhere, because ladders are divided to that size and not further.
+/// Returns whether ladders may help. They help in shells far thinner than the size. No faces may be periodic,
+/// and one size must be asked for everywhere, because ladders are divided to that size and not further.
 bool may_have_ladders(const MeshJob& job, double size) {
   return has_one_size(job.options.mesh, *job.plc) && !job.given.periodic.any() &&
          has_thin_shells(*job.plc, *job.refined_with.bounds.tolerance, size);
@@ -94,10 +94,11 @@ std::size_t fill_ladders(MeshJob& job, const Plc& divided) {
   return poor;
 }
 
-/// Fills the complex between the rungs of its strips, if there are any. Returns whether hardly any tet misses
-/// its bounds. If so, vertices on opposite sides face each other, and further work is not needed: collapses
-/// that ignore bounds would do harm. Rounding decides whether all diagonals of the ladders' cells can be
-/// recovered without further points, so tries diagonals along several directions.
+/// Divides strips of the complex like ladders, if it has any, and fills it with tetrahedra. Returns whether
+/// the mesh is good: hardly any tet misses its bounds or has a far too long edge, and the limit on vertices
+/// is kept. Vertices on opposite sides of a good mesh face each other, so no further work is needed:
+/// collapses that ignore bounds would do harm. Rounding decides whether all diagonals of the ladders' cells
+/// can be recovered without further points, so tries diagonals along several directions.
 bool is_good_with_ladders(MeshJob& job) {
   constexpr std::array<Vector, 3> directions{{{0.36, 0.48, 0.8}, {-0.36, 0.48, 0.8}, {0.36, -0.48, 0.8}}};
   const double size = smallest_size(job.options.mesh, job.plc->bounds.diagonal());
@@ -198,9 +199,7 @@ void tetrahedralize(MeshJob& job) {
 void settle(MeshJob& job, Hope hope) {
   constexpr unsigned most_rounds = 6;
   constexpr std::size_t few = 20, within_reach = 50;
-  if (job.refined_with.bounds.interior_node)
-    return;  // interior nodes are complete; coarsening would remove
-             // them
+  if (job.refined_with.bounds.interior_node) return;  // coarsening would remove interior nodes
   PipelineResult& made = job.made;
   std::size_t least = count_misshapen(job, made.result.mesh);
   if (hope == Hope::good && tets_per_poor * least > made.result.mesh.tets.size()) throw Hopeless();
@@ -212,11 +211,11 @@ void settle(MeshJob& job, Hope hope) {
     if (count_misshapen(job, mesh) == 0) made.result.mesh = std::move(mesh);
     return;
   }
-  // Take no detours if more tets than this are poor; then another round follows only if the last one gained
-  // much.
+  // If more tets than this are poor, do not turn to thorough improvement, and begin another round only if the
+  // last one gained much.
   const std::size_t in_reach = within_reach + made.result.mesh.tets.size() / tets_per_poor;
-  // Begin without detours, which are slow: `relax` divides edges so that vertices face each other, and that
-  // mends more tets in less time.
+  // Begin without thorough improvement, which is slow: `relax` divides edges so that vertices face each
+  // other, and that mends more tets in less time.
   bool thoroughly = false;
   for (unsigned round = 0; round < most_rounds && least > 0; ++round) {
     TetMesh mesh = made.result.mesh;

@@ -16,8 +16,8 @@ bool may_start_constrained(const PipelineOptions& options);
 /// Returns whether hardly any tet has an edge far longer than this size.
 bool keeps_lengths(const TetMesh& mesh, double size);
 
-/// Returns whether the options permit a mesh of rings around rods: its edges have one size, and nothing else
-/// is asked of distances and shapes.
+/// Returns whether the options permit a mesh of rings around rods. The edges of such a mesh have one size, so
+/// the options must not ask for other sizes, for a surface distance or for better shapes than usual.
 bool may_have_rods(const MeshJob& job);
 
 /// Makes a mesh of rings around rods, if all bodies of the complex are thin rods. Returns false if not, or if

@@ -8,7 +8,7 @@
 namespace collarmesh {
 
 /// Returns a sentence saying that a refinement reached `most` vertices, the last one at `where`, and which
-/// features are near that place. Cost: linear.
+/// two patches are nearest to that place. Cost: linear.
 std::string describe_explosion(const Plc& plc, std::size_t most, const Point& where);
 
 }  // namespace collarmesh

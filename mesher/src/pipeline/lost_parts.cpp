@@ -21,7 +21,7 @@ struct Body {
   double thickness() const { return area > 0 ? 2 * volume / area : 0; }
 };
 
-// Returns volume and area of the regions, largest first.
+// Returns the volumes and areas of the regions but the outside, largest volume first.
 std::vector<Body> bodies_of(const Plc& plc) {
   std::vector<Body> bodies(plc.regions.size());
   for (std::size_t r = 1; r < bodies.size(); ++r) bodies[r].volume = std::fabs(plc.regions[r].volume);
@@ -62,7 +62,8 @@ std::string lost_bodies(const Plc& finer, const Plc& coarser, double tolerance) 
   return {};
 }
 
-// Returns a sentence if a tag is in `after` but not in `before`, else nothing.
+// Takes the tags that the finer repair (`before`) and the coarser one (`after`) have lost. Returns a sentence
+// on a tag that only the coarser one has lost; empty if there is none.
 std::string lost_beyond(const std::vector<Tag>& before, const std::vector<Tag>& after, const char* what) {
   for (const Tag tag : after)
     if (std::ranges::find(before, tag) == before.end())

@@ -28,7 +28,7 @@ struct MeshJob {
   void trace(std::string_view stage, const TetMesh& mesh);
 
   const PipelineOptions given;
-  Start start;  ///< the start of this mesh
+  Start start;  ///< what this mesh is made from
   PipelineResult made;
   RunControl control;
   VertexBudget budget;

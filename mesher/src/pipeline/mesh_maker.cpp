@@ -189,7 +189,8 @@ bool MeshMaker::may_be_better_constrained() const {
 }
 
 /// Refines with a limit on vertices, beyond which constrained tetrahedra would be faster. Returns whether the
-/// refinement ended within it. The mesh is not used, because the limit changes the order of insertions.
+/// refinement ended below this limit. The mesh is not used, because the limit changes the order of
+/// insertions.
 bool MeshMaker::refines_with_few_vertices() {
   const std::size_t most = job_.refined_with.max_vertices;
   if (most > 0 && most <= few_vertices) return false;

@@ -16,8 +16,8 @@ namespace collarmesh::pipeline {
 /// it starts from constrained tetrahedra instead.
 class MeshMaker {
  public:
-  /// Whether edges of constrained tetrahedra must be about as short as the targets, as those of a refinement
-  /// are.
+  /// Whether edges of a mesh made from constrained tetrahedra must be about as short as the target lengths,
+  /// as edges of a refined mesh are.
   enum class Lengths { any, kept };
 
   /// Keeps a reference to the job. `source` makes the complexes; null if there is only one.
@@ -44,14 +44,14 @@ class MeshMaker {
   std::optional<PipelineResult> from_constrained(const Plc& plc, const std::string& why, Hope hope);
 
   /// If few tets of a mesh made from constrained tetrahedra miss the bounds on their shapes, and nothing else
-  /// is missed, makes it again with further seeds. Keeps the mesh with fewer findings.
+  /// is missed, makes it again with further seeds. Keeps the mesh with the fewest findings.
   void try_seeds_of_constrained(const Plc& plc);
 
   /// Uses a mesh made from the constrained tetrahedra if it keeps every guarantee and, if `lengths` asks for
-  /// it, the target lengths. Returns whether it does. Tries each complex only once.
+  /// it, the target lengths. Returns whether it is used. Tries each complex only once.
   bool take_constrained(const Plc& plc, const std::string& why, Lengths lengths = Lengths::any);
 
-  /// Does not try the constrained tetrahedra of this complex unless all else fails.
+  /// Makes sure that the constrained tetrahedra of this complex are not tried unless all else fails.
   void give_up_constrained(const Plc& plc) { hopeless_ = &plc; }
   bool has_given_up_constrained(const Plc& plc) const { return hopeless_ == &plc; }
 
@@ -64,8 +64,8 @@ class MeshMaker {
 
   /// Multiplies the surface tolerance of first order by this share in further meshes of this complex.
   void come_nearer(const Plc& plc, double share);
-  /// Multiplies the tolerance by a share for each patch. Where the sides of a wall have unequal tolerances,
-  /// they get the smaller one instead.
+  /// Multiplies the tolerance on each smooth patch by the patch's share. If a side of a wall has a share
+  /// below 1 and the tolerances of the two sides differ, gives both sides the smaller tolerance instead.
   void come_nearer(const Plc& plc, const std::vector<double>& shares);
 
   void set_narrow_cells(NarrowCells cells) { narrow_cells_ = cells; }

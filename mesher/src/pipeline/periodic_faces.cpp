@@ -51,9 +51,9 @@ void divide_curves_at_poor_tets(MeshJob& job, TetMesh& mesh) {
   });
 }
 
-/// Coarsens and improves a periodic mesh while it is cut open, at one place after the other, until all tets
-/// are within their bounds. Inserts vertices if asked to. Keeps the best of these meshes. Returns the number
-/// of violations that remain (`count_misshapen`).
+/// Coarsens and improves a periodic mesh while it is cut open at up to three places, one after the other,
+/// until there are no violations (`count_misshapen`). Inserts vertices if asked to. Keeps the mesh with the
+/// fewest violations, and returns their number.
 std::size_t reshape_across(MeshJob& job, TetMesh& mesh, bool insert) {
   using Moved = Recut::Moved;
   TetMesh best;

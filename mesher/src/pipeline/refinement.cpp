@@ -17,15 +17,15 @@ namespace collarmesh::pipeline {
 namespace {
 
 // Factors and reserve for runs with exact geometry: the bounds must still hold after the vertices have moved
-// onto it. The factor on the distance leaves room for twice the distance of CAD triangles from the shape,
-// which is a tenth of the tolerance, and some more.
+// onto it. CAD triangles are up to a tenth of the tolerance away from the shape; the factor on the distance
+// leaves room for twice that, and some more.
 constexpr double distance_left = 0.75, ratio_left = 0.99, angle_reserve = 0.05;
 
 // Layers are pushed into the tets, which makes angles worse where walls are one tet apart.
 constexpr double reserve_for_layers = 0.2;
 
-// Bound on angles in collars with which refinement ended on all shapes tried. Coarsening and improvement
-// reach smaller bounds.
+// Bound on angles in collars, degrees, with which refinement ended on all shapes tried. Coarsening and
+// improvement reach smaller bounds.
 constexpr double reached_collar_angle = 130;
 
 /// A comparison of the number of vertices of a refinement with the number that its sizes ask for. It is
@@ -77,7 +77,8 @@ class VertexCounter {
            is_above_most(0.5 * static_cast<double>(vertices - some_more), 2) && exceeds(vertices);
   }
 
-  // Counts `ahead` times as far as this answer needs, so that calls with more vertices need no new count.
+  // Returns whether this is more than the sizes ask for. Counts `ahead` times as far as the answer needs, so
+  // that later calls with more vertices need no new count.
   bool is_above_most(double vertices, double ahead = 1) {
     if (vertices <= few) return false;
     if (!is_known_ && vertices >= most_) count_up_to(ahead * (vertices - static_cast<double>(few)));

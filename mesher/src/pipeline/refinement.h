@@ -14,7 +14,8 @@ MeshOptions options_of_refinement(const MeshJob& job, NarrowCells narrow_cells);
 /// bound, because a tet just above the bound may be within it once its vertices have moved.
 double least_thin_ratio(const MeshJob& job);
 
-/// Returns the feature size, with a margin for rounding: thinner walls, gaps and wedges need not be resolved.
+/// Returns the feature size as an absolute length, with a margin for rounding. Walls, gaps and wedges that
+/// are thinner need not be resolved.
 double thinner_than_asked(const PipelineOptions& given, double diagonal);
 
 /// Thrown if a refinement inserts many times the vertices that its sizes ask for, because of features thinner
@@ -22,7 +23,8 @@ double thinner_than_asked(const PipelineOptions& given, double diagonal);
 struct FarTooFine {
   std::size_t most;  ///< the number of vertices that was exceeded
 };
-/// Whether a refinement may insert as many vertices as the budgets permit.
+/// The number of vertices that a refinement may insert: as many as the budgets permit, or not many times more
+/// than the sizes ask for.
 enum class Fineness { any, as_asked };
 
 /// Makes the refined mesh. Throws Ended if the run is cancelled or a budget is hit; with Fineness::as_asked,

@@ -23,8 +23,8 @@ class RodAxes {
   /// axis, but nearer than `across` in space.
   bool comes_near_itself(Index rod, double along, double across) const;
 
-  /// Returns the rods whose axes are nearer to a point than `room` times the reach of their sheath plus
-  /// `more`, in order.
+  /// Returns, sorted, the rods whose axes are nearer to a point than `room` times the reach of their sheath,
+  /// plus `more`.
   std::vector<Index> rods_near(const Point& p, double room, double more) const;
 
  private:
@@ -34,7 +34,7 @@ class RodAxes {
   std::vector<Index> first_point_;  // by rod: its first point; at the end, the number of points
   std::vector<Index> rod_of_;       // by piece of an axis
   std::optional<TriangleHierarchy> pieces_;
-  std::vector<Index> common_rod_;  // by node: the rod of all pieces below it, or none
+  std::vector<Index> common_rod_;  // by node: the rod of all pieces below it; none if there are several
   double most_reach_ = 0;
 };
 

@@ -89,7 +89,7 @@ void RodCavity::find_walls() {
     if (!outlines_.contains(end.host)) throw NoRoom();
 }
 
-/// Throws NoRoom if the tet has a corner on a curve or a vertex that stays.
+/// Throws NoRoom if a corner of the tet lies on a curve or at a vertex of the whole complex.
 void RodCavity::require_inner(const std::array<Index, 4>& tet) const {
   for (const Index v : tet) {
     const auto& [dimension, feature] = around_.mesh.features[v];
@@ -97,7 +97,8 @@ void RodCavity::require_inner(const std::array<Index, 4>& tet) const {
   }
 }
 
-/// Adds an edge to the outline on a patch, or removes it with the edge in the opposite direction.
+/// Adds an edge to the outline on a patch. If the outline has the same edge in the opposite direction,
+/// removes that edge instead.
 void RodCavity::add_outline(Index patch, Index a, Index b) {
   Edges& edges = outlines_[patch];
   if (edges.erase({b, a}) == 0) edges.insert({a, b});

@@ -36,7 +36,7 @@ class GapComplex {
   }
 
  private:
-  /// Adds a triangle as a patch of its own. So it stays as it is.
+  /// Adds a triangle as a patch of its own, so that it stays as it is.
   void add_facet(const Corners& corners, bool is_of_rod, const std::array<Index, 2>& regions) {
     const auto patch = static_cast<Index>(gap_.patches.size());
     Plc::Patch& added = gap_.patches.emplace_back();
@@ -124,7 +124,8 @@ class GapComplex {
     }
   }
 
-  /// Throws NoRoom if a triangle was divided. It would not fit to the tets on its other side.
+  /// Throws NoRoom if a triangle of the walls or of the skin was divided, because it no longer fits the tets
+  /// on its other side.
   void require_undivided() const {
     std::vector<unsigned> times(made_.hosts.size(), 0);
     for (const Index patch : made_.gap.face_patch) ++times[patch];

@@ -22,7 +22,8 @@ constexpr double clearance = 3;
 // far from each other in space, too. Bends of axes with sheaths are so slight that nearer places cannot meet.
 constexpr double along_itself = 8;
 
-/// The features of a complex, for distances from those that are no part of a rod.
+/// The features of a complex, for measuring how far a rod's axis is from the features that are no part of
+/// that rod.
 class OtherFeatures {
  public:
   OtherFeatures(const Plc& plc, const std::vector<SheathedRod>& rods)
@@ -86,7 +87,7 @@ class OtherFeatures {
 /// Returns whether other features are far enough from a rod. The patches at the rod's ends may be near the
 /// axis only where the axis leaves them.
 bool is_clear(const OtherFeatures& others, const SheathedRod& rod, Index number) {
-  constexpr double steepest = 0.9;  // least increase of the distance from a host along the axis
+  constexpr double steepest = 0.9;  // least increase of the distance from a host per length of the axis
   const double bound = clearance * rod.reach;
   double length = 0;
   for (std::size_t i = 0; i + 1 < rod.axis.size(); ++i) length += distance(rod.axis[i], rod.axis[i + 1]);

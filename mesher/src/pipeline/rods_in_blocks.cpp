@@ -20,8 +20,8 @@ namespace collarmesh::pipeline {
 
 namespace {
 
-// Widths of the cavity for a sheath, relative to the sheath. Rounding of points decides whether a cavity can
-// be filled.
+// Widths of the cavity for a sheath, relative to the sheath. They are tried in this order, because rounding
+// of points decides whether a cavity can be filled.
 constexpr std::array<double, 3> rooms{1.4, 1.6, 1.8};
 
 /// Puts rods and sheaths into a mesh, in the place of the tets of their cavities.
@@ -40,7 +40,7 @@ class Assembly {
     }
     return std::move(made_);
   }
-  /// Returns the vertices of the rods themselves.
+  /// Returns the vertices of the rods without their sheaths.
   std::vector<Index>& fixed() { return fixed_; }
 
  private:
@@ -173,7 +173,7 @@ class Assembly {
   std::vector<Index> number_;  // by vertex of the refined mesh
 };
 
-/// Finds the tets near each rod. Returns whether it was not cancelled.
+/// Finds the tets near each rod. Returns false if cancelled.
 bool find_near(MeshAroundRods& around, const Execution& execution) {
   constexpr std::size_t tets_per_look = 1024;
   const TetMesh& mesh = around.mesh;
@@ -188,7 +188,7 @@ bool find_near(MeshAroundRods& around, const Execution& execution) {
   return true;
 }
 
-/// Fills the cavity of a rod. Sets whether it is filled. Returns false if cancelled.
+/// Tries to fill the cavity of a rod, and sets `filled`. Returns false if cancelled.
 bool fill_in_some_room(const Plc& plc, MeshAroundRods& around, Index rod, RodFilling& filling, bool& filled,
                        const Execution& execution) {
   filled = false;
@@ -210,8 +210,8 @@ bool fill_in_some_room(const Plc& plc, MeshAroundRods& around, Index rod, RodFil
   return true;
 }
 
-/// Puts rods into the refined mesh of the complex without them. Returns whether there is room for all; if
-/// not, removes the rods without room. Does nothing if cancelled.
+/// Puts rods into the refined mesh of the complex without them. Returns whether it did. Otherwise some rods
+/// have no room, and it removes these from the list; or it was cancelled, and changes nothing.
 bool insert_rods(const Plc& plc, const ComplexWithoutRods& without, std::vector<SheathedRod>& rods,
                  TetMesh& mesh, std::vector<Index>& fixed, const Execution& execution) {
   MeshAroundRods around(mesh, without, rods);

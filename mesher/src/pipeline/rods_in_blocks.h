@@ -15,8 +15,8 @@ std::vector<SheathedRod> find_sheathed_rods(MeshJob& job);
 /// Makes a mesh of a complex with such rods: refines the complex without them, and puts their tetrahedra and
 /// those of their sheaths in the place of the elements there. Removes from the list the rods for which the
 /// refined mesh has no room, and refines once more with these rods in the complex. Sets `fixed` to the
-/// vertices of the other rods, which should stay when the mesh is coarsened. Returns whether it made such a
-/// mesh within the limit on vertices. Throws Ended, FarTooFine, and PlcError.
+/// vertices of the rods that stay in the list; coarsening should not move them. Returns whether it made such
+/// a mesh within the limit on vertices. Throws Ended, FarTooFine, and PlcError.
 bool refine_around_rods(MeshJob& job, std::vector<SheathedRod>& rods, std::vector<Index>& fixed,
                         Fineness fineness);
 

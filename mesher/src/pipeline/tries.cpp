@@ -271,8 +271,8 @@ void Tries::build(RepairOptions repair, SoupPipelineResult& all) {
   maker_.take_new_complex();
 }
 
-/// Meshes a complex within the bound on vertices. Returns the outcome and the reason if a guarantee was
-/// missed.
+/// Meshes a complex within the bound on vertices. Returns the outcome, and the reason if a guarantee was
+/// missed, the refinement exploded or the complex was refused.
 std::pair<Tries::End, std::string> Tries::attempt(const Plc& plc, std::exception_ptr& error) {
   try {
     maker_.make(plc, job_.given.mesh.seed);
@@ -319,9 +319,10 @@ bool Tries::missed(const char* guarantee) const {
                              [&](const Finding& finding) { return finding.guarantee == guarantee; });
 }
 
-/// If angles miss their bounds, as in places far thinner than the size, tries constrained tetrahedra, then
-/// further seeds: if refinement does not end at some place with the random samples of one seed, it may end
-/// with those of another. If regions do not keep their volumes, also reduces the surface distance.
+/// If angles miss their bounds, as in places far thinner than the size, tries constrained tetrahedra. Then
+/// tries further seeds until every guarantee holds: if refinement does not end at some place with the random
+/// samples of one seed, it may end with those of another. If regions do not keep their volumes, also reduces
+/// the surface distance.
 void Tries::try_seeds(const Plc& plc) {
   if (!maker_.depends_on_seed()) return;
   PipelineResult& made = job_.made;
@@ -346,9 +347,9 @@ bool Tries::take_constrained(const Plc& plc) {
   });
 }
 
-/// Tries again with the opposite treatment of narrow places. If cells there were left unbounded, they may
-/// keep large angles, so now their ratio is bounded unless that takes many times the vertices. If they were
-/// bounded, they are left unbounded.
+/// If angles still miss their bounds, tries the opposite treatment of narrow places. If cells there were left
+/// unbounded, they may keep large angles, so now their ratio is bounded unless that takes many times the
+/// vertices. If they were bounded, they are left unbounded.
 void Tries::try_narrow_places_otherwise(const Plc& plc) {
   constexpr std::size_t times = 10, more = 100'000;
   if (!job_.given.coarsen || !missed(guarantee::thin_angles)) return;
@@ -383,8 +384,7 @@ double Tries::share_for_volumes() const {
   const double allowed = volume_allowance(static_cast<int>(given.order));
   double share = 1;
   if (given.mesh.bounds.distance > 0 || given.mesh.bounds.tolerance)
-    return share;  // the options give the
-                   // distance
+    return share;  // the options give the distance
   const ShapeMeasures &input = job_.made.check.of_input, &mesh = job_.made.check.of_mesh;
   const auto keep = [&](double wanted, double found) {
     if (const double off = std::fabs(found - wanted); off > allowed * wanted)
@@ -417,7 +417,7 @@ double Tries::largest_loss(const Plc& plc, std::vector<double>* shares) const {
 }
 
 /// Returns whether the kept mesh is small, keeps every guarantee, and was refined with the default distances
-/// of first order, without hitting the bound on vertices.
+/// of first order, without layers or periodic faces and without hitting the bound on vertices.
 bool Tries::may_keep_volumes() const {
   constexpr std::size_t most_tets = 100'000;
   const PipelineOptions& given = job_.given;

@@ -28,7 +28,7 @@ double area_of(const Plc& plc, Index triangle) {
 double squares_on(const Plc& plc, const Plc::Patch& patch, double size, const SurfaceTolerance& tolerance) {
   const std::vector<Curvature> curvature =
       patch.planar ? std::vector<Curvature>(patch.triangle_count) : curvatures(plc, patch);
-  constexpr double most_per_square = 1. / 16;  // smallest area of a square, relative to that of the size: a
+  constexpr double most_per_square = 1. / 16;  // smallest area of a square, relative to the size squared: a
                                                // limit for folds, where the surface turns very sharply
   double squares = 0;
   for (Index i = 0; i < patch.triangle_count; ++i) {
@@ -122,8 +122,8 @@ std::size_t most_vertices_expected(const Plc& plc, const PipelineOptions& option
 }
 
 std::size_t most_vertices_on_rods(const Plc& plc, const MeshOptions& options) {
-  // `by_chord`: vertices for each square of the longest chords, more than rods far thinner than the size
-  // need. `most`: the largest limit.
+  // `by_chord`: vertices for each square whose sides are the longest chords. Rods far thinner than the size
+  // need fewer. `most`: the largest limit.
   constexpr double by_chord = 8, most = 1e6;
   const SurfaceTolerance tolerance = tolerance_of(plc, options.bounds, options.size);
   const double size = smallest_size(options, plc.bounds.diagonal());

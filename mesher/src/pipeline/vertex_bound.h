@@ -10,8 +10,8 @@ namespace collarmesh {
 
 /// Returns an upper limit far above the number of vertices that refinement needs for a complex without
 /// features much finer than the sizes. (Sheets that meet at a hundredth of a degree, needles and folds make
-/// millions of vertices.) It does not depend on the distances of features. Cost: linear if there are only
-/// target edge lengths everywhere and in regions, else near linear.
+/// millions of vertices.) It does not depend on the distances between features. Cost: linear if there are
+/// only target edge lengths everywhere and in regions, else near linear.
 std::size_t most_vertices_expected(const Plc& plc, const PipelineOptions& options);
 
 /// Returns an upper limit, at most a million, on the number of vertices that refinement needs on rods and
@@ -19,7 +19,8 @@ std::size_t most_vertices_expected(const Plc& plc, const PipelineOptions& option
 /// need more.
 std::size_t most_vertices_on_rods(const Plc& plc, const MeshOptions& options);
 
-/// Returns the smallest target edge length that is given as a number, absolute.
+/// Returns the smallest of the target edge lengths that are given as numbers, absolute. If none is given for
+/// the whole shape, the default for this diagonal counts.
 double smallest_size(const MeshOptions& options, double diagonal);
 
 }  // namespace collarmesh

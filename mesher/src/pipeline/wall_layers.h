@@ -4,7 +4,7 @@
 
 namespace collarmesh::pipeline {
 
-/// Puts layers on walls, if asked for, and adds their certificate.
+/// Puts layers on walls, if asked for, and checks the mesh with its layers.
 void add_layers(MeshJob& job);
 
 }  // namespace collarmesh::pipeline

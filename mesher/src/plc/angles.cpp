@@ -42,7 +42,7 @@ double smallest_angle_along(const Arc& a, double a0, const Arc& b, double b0, do
   const Vector ua = a.at(a0), va = a.at(a0 + std::numbers::pi / 2), ub = b.at(b0),
                vb = b.at(b0 + std::numbers::pi / 2);
   double best = std::fmin(angle_between(ua, ub), angle_between(a.at(a0 + length), b.at(b0 + length)));
-  // The cosine of their angle is constant + p cos 2s + q sin 2s.
+  // The cosine of the angle between the rays is a constant + (p cos 2s + q sin 2s) / 2, largest at `peak`.
   const double p = dot(ua, ub) - dot(va, vb), q = dot(ua, vb) + dot(va, ub);
   const double peak = 0.5 * std::atan2(q, p);
   for (const double s : {peak, peak + std::numbers::pi})

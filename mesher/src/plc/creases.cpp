@@ -12,7 +12,7 @@ namespace collarmesh {
 
 namespace {
 
-// An angle must be below the threshold by more than rounding (degrees).
+// Angles count as below the threshold if they are below it by more than this (degrees).
 constexpr double angle_rounding = 1e-6;
 
 std::vector<Crease> below(std::vector<Crease> angles, double threshold) {

@@ -83,8 +83,8 @@ class CurveFinder {
       if (!segments_at_[p].empty() && !passes(p)) is_vertex_[p] = true;
   }
 
-  // Finds points where several fans of triangles meet, or a fan meets a segment that is no edge of a
-  // triangle.
+  // Marks points as vertices where several fans of triangles meet, or where a fan meets a segment that is no
+  // edge of a triangle.
   void mark_pinched_points() {
     const auto& triangles = draft_.triangles;
     DisjointSets fans(3 * triangles.size());
@@ -143,8 +143,8 @@ class CurveFinder {
     chains_.push_back(std::move(chain));
   }
 
-  // Cuts chains at their farthest points until none deviates from a straight line. This is necessary because
-  // `passes` compares a point only with its two neighbours.
+  // Cuts chains, except given ones, at the points farthest from their chords until all pieces are straight.
+  // This is necessary because `passes` compares a point only with its two neighbours.
   void cut_bent_chains() {
     std::vector<Chain> pieces;
     for (const Chain& chain : chains_) {

@@ -18,8 +18,8 @@ struct FeatureSegment {
 };
 
 /// Finds the segments: edges that the input gives as segments; edges that are not shared by exactly two
-/// triangles; edges between different tags or soups; and edges where a surface turns by more than the feature
-/// angle (degrees) or, if its features are given, by more than 90 degrees.
+/// triangles; edges between different tags or soups; and edges between flat clusters where a surface turns by
+/// more than the feature angle (degrees; 0: at all) or, if its features are given, by more than 90 degrees.
 std::vector<FeatureSegment> find_segments(const facets::ComplexDraft& draft, const facets::EdgeTable& edges,
                                           const facets::FlatClusters& clusters, double feature_angle);
 
@@ -28,8 +28,8 @@ std::vector<FeatureSegment> find_segments(const facets::ComplexDraft& draft, con
 Index find_patches(const facets::ComplexDraft& draft, const facets::EdgeTable& edges,
                    const std::vector<FeatureSegment>& segments, std::vector<Index>& patch_of);
 
-/// Fits a plane to the points of the patch. If all are within the tolerance of it, sets planar, normal and
-/// origin, and raises the draft's deviation.
+/// Fits a plane to the points of the patch. If all are within the planar tolerance of the plane, sets planar,
+/// normal and origin, and raises the draft's largest deviation to that of the points, if that is larger.
 void fit_plane(facets::ComplexDraft& draft, const std::vector<Index>& triangles, Plc::Patch& patch);
 
 }  // namespace collarmesh::plc

@@ -61,7 +61,7 @@ void add_bodies(const PolygonSoup& soup, std::vector<Body>& bodies) {
   });
 }
 
-/// A search for triangles by place: tells whether there is one within or near a box.
+/// A search for triangles by place: tells whether one lies in a box that is enlarged on all sides.
 class TrianglesByPlace {
  public:
   explicit TrianglesByPlace(const Plc& plc) : plc_(plc), order_(plc.triangles.size()) {

@@ -16,7 +16,7 @@ std::vector<Plc::Warning> lost_bodies(std::span<const PolygonSoup> soups, const 
 /// The regions whose volume (within 2%) no region of the repaired complex has, each given by one of its
 /// points.
 struct LostRegions {
-  std::vector<Point> thin;    ///< regions no thicker than the tolerance allows
+  std::vector<Point> thin;    ///< thin regions, see `lost_regions`
   double thin_volume = 0;     ///< volume of all thin regions
   std::vector<Point> others;  ///< regions that became parts of larger ones, or were split
 };

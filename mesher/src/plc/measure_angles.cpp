@@ -84,7 +84,8 @@ class PatchFans {
     for (const Index t : triangles_at_[point]) visited_[corner_of(t)] = false;
     return fans;
   }
-  /// Returns the side of the same edge in the neighbouring triangle of the patch; none at a segment.
+  /// Returns the side of the neighbouring triangle on the same edge; none at a segment, or if not exactly two
+  /// triangles meet there.
   Index across(Index side) const {
     const Index edge = edges_.edge_of(side);
     const auto sides = edges_.sides(edge);
@@ -92,8 +93,9 @@ class PatchFans {
     return sides[0] == side ? sides[1] : sides[0];
   }
 
-  /// Returns how sharply a smooth patch folds in a fan around the point (degrees, see fold_angle); 180 if an
-  /// edge of the fan is no longer than `noise_length`, because the direction of such an edge is unreliable.
+  /// Returns how sharply a smooth patch folds in a fan around the point (degrees, see fold_angle); 180 if the
+  /// fan is too flat to fold, or if an edge of it is no longer than `noise_length`, because the direction of
+  /// such an edge is unreliable.
   double fold(Index point, const Fan& fan, double noise_length) const {
     const bool too_small = std::ranges::any_of(
         fan.rim, [&](Index q) { return distance(points_[point], points_[q]) <= noise_length; });
@@ -142,7 +144,7 @@ class PatchFans {
 };
 
 // The direction of an edge is not reliable if the edge is shorter than this many planar tolerances; nor is
-// that of a triangle if its height is less than this.
+// the normal of a triangle that is lower than this.
 constexpr double noise = 10;
 // A patch has a vertex at a point where it folds to less than this angle (degrees).
 constexpr double folded = 90;
@@ -340,7 +342,7 @@ class AngleFinder {
 // other: their fan is too flat to fold.
 constexpr double flat_cosine = 0.966;
 
-// Returns points where the triangles of some smooth patch face different ways; all other points are flat.
+// Returns points where the normals of some smooth patch's triangles differ by more than 15 degrees.
 std::vector<Index> points_not_flat(std::span<const Point> points, const Plc& plc) {
   struct First {
     Index patch = none;  // the last patch found at the point

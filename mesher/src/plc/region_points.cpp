@@ -91,8 +91,8 @@ class PointPlacer {
 
   bool encloses_void(Index side) { return volume_[shells_.find(side)] > 0; }
 
-  /// Casts lines from places on the triangle of this side into the region. Returns the middle of the longest
-  /// line; nothing if all lines fail.
+  /// Casts lines from places on the triangle of this side into the region, each up to the next triangle.
+  /// Returns the middle of the longest line; nothing if all lines fail.
   std::optional<Point> point_in(Index side) const {
     constexpr std::size_t attempts = 12;
     const Index t = side / 2;

@@ -33,7 +33,7 @@ class Sum {
   double sum_ = 0, lost_ = 0;
 };
 
-// A bounded component of space without the triangles: one that a component of the surface encloses.
+// A bounded part of space, separated from the rest by triangles: a component of the surface encloses it.
 struct BoundedChamber {
   Index inner_shell = none;  // inner shell of the component that encloses it
   bool complex = false;
@@ -90,7 +90,7 @@ class RegionFinder {
 
   double reach() const { return 2 * draft_.bounds.diagonal(); }
 
-  // Casts a line through each component to find its outermost shell, and the surface that this shell faces.
+  // Casts a line through each component to find its outer shell, and the chamber around the component.
   void nest_components() {
     std::vector<Index> largest(count_, none);
     std::vector<double> area(count_);
@@ -284,7 +284,7 @@ class RegionFinder {
            !(inside_region || (chamber.behind_claimed && !chamber.beside_outside));
   }
 
-  // Numbers the regions from 1 by their first soup, then by their first triangle.
+  // Numbers the regions from 1, in the order of their owners, then of the owner's first triangle there.
   void number() {
     std::vector<Index> order;
     for (Index i = 0; i < list_.size(); ++i)
@@ -372,7 +372,7 @@ class RegionFinder {
   const ComplexDraft& draft_;
   Faults& faults_;
   Index count_;
-  Index outside_;            // representative of the outside
+  Index outside_;            // element of the sets of sides that stands for the outside
   DisjointSets components_;  // sets of triangles
   DisjointSets shells_;      // sets of sides, within components
   DisjointSets chambers_;    // sets of sides
@@ -380,7 +380,7 @@ class RegionFinder {
   std::vector<Index> outer_shell_;  // by component
   std::vector<BoundedChamber> list_;
   std::vector<Index> chamber_of_shell_;           // index in list_
-  std::vector<Index> region_of_chamber_;          // by representative
+  std::vector<Index> region_of_chamber_;          // by representative in chambers_
   std::map<std::array<Index, 2>, Share> shares_;  // by chamber and soup
   std::vector<PlacedPoint> holes_, region_points_;
   std::vector<Plc::Warning> warnings_;

@@ -38,8 +38,8 @@ class Shape {
   /// Returns the distance from a point on a curve to another curve that runs along it on a common patch, or
   /// `widest` if that is smaller.
   double strip_width(const Point& p, Index curve, const Vector& along, double widest) const;
-  /// Returns the distance from a point on a triangle, across a region, to a facing patch that does not meet
-  /// the triangle's patch; at most `widest`.
+  /// Returns the distance from a point on a triangle, across a region, to a facing triangle of the same
+  /// patch or of a patch that shares no curve with it; at most `widest`.
   double wall_width(const Point& p, Index triangle, double widest) const;
   double distance_to_surface(const Point& p) const { return tree_.nearest(p).distance; }
   /// Returns the region at a point. Precondition: the point is not on the surface.

@@ -92,8 +92,8 @@ class BoundaryProjection {
     return bounds;
   }
 
-  // Returns the allowed distance of a vertex on the exact geometry from its feature in the complex. The exact
-  // geometry itself may be farther from the complex than that if the tolerance is small.
+  // Returns the largest distance from its place on the exact geometry at which a vertex is moved there. If
+  // the tolerance is small, the exact geometry may be farther than that from the complex.
   double farthest_from(unsigned dimension, Index feature, const Point& p) const {
     if (dimension == 1) return most_off * tolerance_.least_on_curve(plc_.curves[feature]);
     if (!tolerance_.varies()) return most_off * tolerance_.largest();
@@ -213,8 +213,8 @@ class BoundaryProjection {
   }
 
   // Moves back corners of thin tets that no longer are in a narrow place: moving vertices turns the normals
-  // that define narrow places. Moves back the corner that moved farthest; if no corner moved, treats each tet
-  // around it in the same way. Returns the tets around these vertices.
+  // that define narrow places. Moves back the corner that moved farthest; if no corner of a tet moved, does
+  // this for each tet that shares a corner with it. Returns the tets around these vertices.
   std::vector<Index> keep_narrow_places() {
     std::vector<Index> around;
     if (!options_.bounds.thin_in_narrow_places_only) return around;

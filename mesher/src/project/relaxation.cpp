@@ -181,6 +181,7 @@ std::optional<Point> Relaxation::on_feature(Index vertex, const Point& wish) con
 }
 
 // Moves the vertex to the place where the penalty of the tets around it is least, found by pattern search.
+// Returns whether it moved.
 bool Relaxation::improve(Index vertex) {
   const Point start = mesh_.points[vertex];
   // Most places do not help the worst tets, so evaluate these first.

@@ -26,7 +26,8 @@ inline bool on_course(const Vector& then, const Vector& now) {
   return dot(then, now) > least_cosine * norm(then) * norm(now);
 }
 
-/// Returns the score of a tet without positive volume, from -1 to 0: its volume relative to its longest edge.
+/// Returns the score of a tet without positive volume, from -1 to 0: six times its volume, relative to the
+/// cube of its longest edge.
 inline double score_of_inverted(const std::array<Point, 4>& p, double six_volume) {
   double longest = 0;
   for (const auto& [i, j] : cell_shapes::corner_pairs)

@@ -13,7 +13,7 @@ struct AspectRatios {
   double smallest = 0, largest = 0;
 };
 
-/// Returns the extremes over the vertices for all of whose cells `counts` returns true.
+/// Returns the extremes over the vertices whose cells all satisfy `counts`.
 AspectRatios aspect_ratios(const RefinedMesh& mesh, const std::function<bool(Index cell)>& counts);
 
 }  // namespace collarmesh

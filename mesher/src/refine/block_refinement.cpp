@@ -13,7 +13,7 @@ namespace collarmesh {
 
 namespace {
 
-// In smaller meshes too many vertices lie near the borders of blocks, or on curves.
+// In meshes with fewer vertices than this, too many lie near the borders of blocks, or on curves.
 constexpr std::size_t least_vertices = 4096;
 // A round costs some time for every vertex of the mesh, so it needs `least_entries` entries, and at least one
 // for each `vertices_per_entry` vertices.
@@ -61,8 +61,8 @@ BlockRefinement::BlockRefinement(const Domain& domain, RefinedMesh& mesh, Surfac
       cells_(cells),
       queue_(queue),
       next_round_(least_vertices) {
-  // Blocks are impossible if callers' functions, which need not be thread-safe, or data at vertices are
-  // involved.
+  // No rounds in the paper's profile, or if they would use callers' functions, which need not be thread-safe,
+  // or data at vertices.
   if (sizes.asked().has_field() || sizes.any_at_vertices() || domain_.options.vertex_ratio > 0 ||
       domain_.is_papers())
     next_round_ = std::numeric_limits<std::size_t>::max();
@@ -94,8 +94,8 @@ bool BlockRefinement::is_due() {
   return most_insertions() >= least_entries;
 }
 
-// Returns the largest number of insertions of a round. The budget of vertices limits it, and the caller must
-// be able to cancel between rounds.
+// Returns the largest permitted number of insertions of a round: the budget of vertices limits it, and rounds
+// must be short because the caller can only cancel between them.
 std::size_t BlockRefinement::most_insertions() const {
   const std::size_t wanted = domain_.options.max_vertices, vertices = mesh_.vertex_count();
   if (wanted == 0) return most_insertions_of_a_round;
@@ -153,8 +153,8 @@ std::size_t BlockRefinement::bytes() const {
 
 std::size_t BlockRefinement::block_count() const { return cuts_.size() + 1; }
 
-// Divides vertices by a kd-tree of a sample. Its cuts change from round to round, so that places between
-// blocks in one round lie inside a block in the next.
+// Assigns vertices to blocks by a kd-tree of a sample of them. The cuts change from round to round, so that
+// vertices between blocks in one round lie inside a block in the next.
 void BlockRefinement::divide_vertices() {
   const std::size_t vertices = mesh_.vertex_count();
   const std::size_t blocks =
@@ -198,8 +198,8 @@ bool BlockRefinement::may_belong_to_block(Index vertex) const {
          !collar_cells_.near(vertex);
 }
 
-// Deals the entries to blocks: an entry of a cell, or of a triangle between cells, goes to a block if all
-// vertices of the cells belong to the block. Puts the others back if they are still due.
+// Deals the entries to blocks: an entry goes to a block if all vertices of its cell, or of the two cells at
+// its triangle, belong to the block. Puts the others back into the queue if they are still due.
 std::vector<std::vector<WorkQueue::Entry>> BlockRefinement::deal(const std::vector<WorkQueue::Entry>& taken) {
   constexpr std::uint16_t gone = Triangulation::no_owner - 1;
   std::vector<std::uint16_t> owner(taken.size());
@@ -309,7 +309,8 @@ std::optional<Candidate> BlockRefinement::candidate(const WorkQueue::Item& item,
                                  : triangles_.candidate_beside(item.entry.id, random);
 }
 
-// Destroys an item as the loop does, if no candidate warps or encroaches a subsegment.
+// Destroys the ball of an item as the loop does. Here no candidate warps or encroaches a subsegment, because
+// no unresolved point and no centre of a protective ball lies in the Voronoi cells of a block's vertices.
 BlockRefinement::Fate BlockRefinement::destroy(const WorkQueue::Item& item, Block block, Worker& worker) {
   const Point& centre =
       of_cells(item.priority) ? mesh_.circumcentre(item.entry.id) : surface_.triangle(item.entry.id).x;

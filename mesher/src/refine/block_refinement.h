@@ -29,8 +29,9 @@ namespace collarmesh {
 /// first bucket of the queue, divides these vertices into blocks, and refines each block as the loop does: in
 /// the same order of priorities, and with cells that yield to triangles. Entries that do not lie in one block
 /// wait in the queue. The next round has other blocks; the loop handles the few entries that remain.
-/// The mesh does not depend on the number of threads: blocks depend only on the mesh, and random offsets on
-/// the cell or triangle to destroy. The loop decides when a round may take entries from the queue.
+/// The mesh does not depend on the number of threads: blocks depend only on the mesh, and random offsets only
+/// on the seed and the cell or triangle to destroy. The loop decides when a round may take entries from the
+/// queue.
 class BlockRefinement {
  public:
   /// Keeps all by reference.
@@ -41,7 +42,7 @@ class BlockRefinement {
 
   /// Returns whether cells or triangles are next in the queue, and enough of them to make a round worthwhile.
   bool is_due();
-  /// Runs a round. Precondition: it is due.
+  /// Runs a round. Precondition: `is_due` has just returned true.
   void round();
   /// Returns the number of vertices that all rounds have inserted.
   std::size_t inserted() const { return inserted_; }
@@ -71,8 +72,8 @@ class BlockRefinement {
     Triangulation::Block& mesh;
     RestrictedSurface::Workspace& surface;
   };
-  /// A node of a binary tree in an array: node 2 i + 1 is below the cut, node 2 i + 2 above. The leaves are
-  /// blocks.
+  /// A node of a binary tree in an array. Below the cut of node i is its child 2 i + 1, above the cut its
+  /// child 2 i + 2. The leaves are blocks.
   struct Cut {
     std::size_t axis;
     double place;

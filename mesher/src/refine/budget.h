@@ -27,7 +27,7 @@ class Budget {
         outcome_(outcome),
         deadline_(Deadline::in(options.time_limit)) {}
 
-  /// Returns whether a budget is spent or the caller has cancelled; then sets the outcome.
+  /// Returns whether a budget is spent or the caller has cancelled; if so, sets the outcome.
   bool spent(const Usage& now);
 
   bool is_out_of_time() const { return deadline_.passed(); }

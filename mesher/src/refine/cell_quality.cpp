@@ -12,9 +12,9 @@ constexpr double tet_offset = 0.05;
 // A cell is flat if six times its volume is below this share of the cube of the longest edge at its first
 // corner.
 constexpr double least_volume = 1e-11;
-// Largest number of cells at a new vertex for which narrow cells may exceed the radius-edge bound. A vertex
-// between two lines with m and n vertices may have m n cells; in a mesh with bounded ratios it has at most
-// 60.
+// If a new vertex has more cells than this, its narrow cells must keep the radius-edge bound, too. A vertex
+// between two lines with m and n vertices may have m n cells; if all radius-edge ratios are bounded, it
+// has at most 60.
 constexpr std::size_t most_narrow_cells = 80;
 
 struct Shape {
@@ -107,8 +107,8 @@ void CellQuality::cells_made(const ConflictZone& zone, Index vertex) {
   for (const Index cell : zone.created) judge(cell, queue_, leaves_narrow_cells);
 }
 
-// Tests the paper's stronger quality measure (section 1.2), which compares the circumradius of a cell with
-// the shortest edge at each of its vertices.
+// Returns whether a cell violates the bound on the paper's stronger quality measure (section 1.2), which
+// compares the cell's circumradius with the shortest edge at each of its vertices.
 bool CellQuality::uneven_at_vertex(Index cell) const {
   if (domain_.options.vertex_ratio == 0) return false;
   const auto& v = mesh_.corners(cell);

@@ -17,9 +17,9 @@ namespace collarmesh {
 /// The part that decides which cells to destroy: skinny ones, by their radius-edge ratio or because they are
 /// flat, and large ones.
 ///
-/// State: with a vertex ratio, the shortest edge at every vertex. Invariant: after an insertion the queue
-/// contains every new cell that must be destroyed, and every older cell for which this has become true. The
-/// loop reports insertions and takes candidates.
+/// State: if the options bound the vertex ratio, the shortest edge at every vertex. Invariant: after an
+/// insertion the queue contains every new cell that must be destroyed, and every older cell that must be
+/// destroyed because of the insertion. The loop reports insertions and takes candidates.
 class CellQuality {
  public:
   /// Keeps all by reference.
@@ -50,7 +50,7 @@ class CellQuality {
            (!collar_cells_.inside(item.entry.id) ||
             (domain_.is_papers() && item.priority == WorkQueue::skinny_cells));
   }
-  /// Queues a cell again if another insertion has been made and the cell still exists.
+  /// Queues a cell again if it still exists after another insertion.
   void queue_again(const WorkQueue::Item& item, double squared_radius);
 
   /// Judges the new cells. Precondition: these cells were reported to surface, collar cells and sizes.
@@ -60,8 +60,8 @@ class CellQuality {
   void judge(Index cell, WorkQueue& queue) const { judge(cell, queue, leaves_narrow_cells_); }
   /// Judges all cells: at the start, and when sizes have changed everywhere.
   void judge_all();
-  /// Makes narrow cells keep the radius-edge bound, too, from now on. Queues the cells that exceed it and
-  /// returns whether there are any.
+  /// Makes narrow cells keep the radius-edge bound, too, from now on. Queues those that exceed it and returns
+  /// whether there are any. Further calls do nothing and return false.
   bool bound_narrow_cells();
 
   std::size_t bytes() const { return shortest_edge_.bytes(); }

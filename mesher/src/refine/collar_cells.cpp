@@ -7,7 +7,8 @@ namespace collarmesh {
 
 namespace {
 
-// Up to this many balls near a vertex are tested one by one; if there are more, their hierarchy is searched.
+// If fewer balls than this are near a vertex, they are tested one by one; otherwise their hierarchy is
+// searched.
 constexpr std::size_t most_nearby_balls = 24;
 
 }  // namespace

@@ -29,20 +29,20 @@ class CollarCells {
   bool holds(const std::array<Index, 3>& vertices, const Point& p) const;
 
   void cells_made(const ConflictZone& zone, Index vertex);
-  /// Makes room for all cells. Call it before `quiet_cell_made`.
+  /// Makes room for the marks of all cells and vertices. Call it before `quiet_cell_made`.
   void fit_mesh();
   /// Reports a new cell, none of whose vertices is near. Several threads may report different cells.
   void quiet_cell_made(Index cell) {
     if (cell < inside_.size()) inside_[cell] = 0;
   }
 
-  /// Report new balls: this vertex may be near one, or the circumcentre of this cell may lie in one.
+  /// Report new balls: this vertex may be near one, or the circumcentre of this cell lies in one.
   void note_near(Index vertex);
   void note_inside(Index cell);
   /// Checks again which of the near vertices still are near.
   void forget_far_vertices();
 
-  /// Adds a cell outside all balls to the collar of a ball.
+  /// Adds a cell to the collar of a ball, although its circumcentre lies outside all balls.
   void take_in(Index cell, Index ball);
   /// Returns the ball whose collar a cell was added to; none if it was not added to any.
   Index taken_in_by(Index cell) const;
@@ -59,8 +59,8 @@ class CollarCells {
   const CollarSystem& collars_;
   GrowingArray<std::uint8_t> inside_, near_;     // flags by cell and by vertex; empty without balls
   std::unordered_map<Index, TakenIn> taken_in_;  // by cell
-  std::vector<Index> balls_;                     // balls near the last vertex
-  Index last_vertex_ = none;                     // none if balls_ may be incomplete
+  std::vector<Index> balls_;                     // balls near last_vertex_
+  Index last_vertex_ = none;                     // inserted last; none if balls_ may be incomplete
   std::vector<Index> cells_;                     // scratch
 };
 

@@ -31,7 +31,8 @@ void CollarCreator::start() {
   take_up_balls(none, {none, none}, BallReason::up_front);
 }
 
-// Returns the smallest target edge length of the features at this place of a vertex or curve.
+// Returns the target edge length at p on a curve. At a vertex, returns the smallest one of its curves and
+// patches.
 double CollarCreator::target_size(const Feature& feature, const Point& p) const {
   const Sizing& sizing = sizes_.asked();
   if (feature.dimension == 1) return sizing.feature_size(1, feature.index, p);
@@ -127,8 +128,8 @@ void CollarCreator::create_on_curve(Index curve, BallReason reason) {
   }));
   const OpenCreases::Chain chain = open_creases_.close(curve);
   isolated_.erase(curve);
-  // On closed curves, balls are centred on mesh vertices. On other curves this kept the repair of the collar
-  // surface from ending.
+  // Only on closed curves are balls centred on mesh vertices. On other curves, such balls may keep the repair
+  // of the collar surface from ending.
   std::vector<PlaceOnCurve> vertices;
   if (domain_.plc.curves[curve].closed) vertices = curves_.vertices_amid(curve);
   const Index at_chain = curves_.remove_chain(curve),

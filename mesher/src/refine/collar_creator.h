@@ -55,7 +55,7 @@ class CollarCreator {
   BallReason reason(Index ball) const { return reasons_[ball]; }
 
   // Functions for collars created in the pass:
-  /// Returns whether an unresolved point is a vertex of the complex that will get a ball.
+  /// Returns whether an unresolved point is a crease vertex of the complex that has no ball yet.
   bool waits_for_ball(Index point) const {
     return placement_ && collars_.is_crease_vertex(point) && collars_.ball_at_vertex(point) == none;
   }
@@ -69,8 +69,8 @@ class CollarCreator {
   /// Creates the balls of curves that have become isolated.
   void create_on_isolated_curves();
   /// Creates the balls of a crease instead of splitting its subsegment, unless the crease still waits for
-  /// points of its chain. Returns whether it did so; then the subsegment no longer exists. Precondition: the
-  /// subsegment exists.
+  /// points of its chain or, in the paper's profile, is not isolated. Returns whether it did so; then the
+  /// subsegment no longer exists. Precondition: the subsegment exists.
   bool create_at_subsegment(Index subsegment);
   /// Creates the balls of all creases that have none yet. Returns false if there are no such creases.
   /// Precondition: the queue is empty, so the ends of creases have their balls.

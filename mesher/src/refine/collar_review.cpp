@@ -69,8 +69,8 @@ bool CollarReview::check() {
   return queue_.pushed() > before;
 }
 
-// Starts the review: all cells are new. Voronoi cells have become smaller since the collars were created, so
-// fewer vertices are near them now.
+// Starts the reviews: touches all cells near collars. Voronoi cells have become smaller since the collars
+// were created, so fewer vertices are near collars now.
 void CollarReview::start() {
   started_ = true;
   collars_.complete();
@@ -149,8 +149,8 @@ Index CollarReview::ball_to_take_in(Index cell) {
   return none;
 }
 
-// Judges the triangles of these cells, and known triangles that share an edge with the border of these cells.
-// Returns false when stopped.
+// Judges the triangles of these cells, and triangles from earlier reviews that share an edge with the border
+// of these cells. Returns false when stopped.
 bool CollarReview::judge_changed_triangles(const std::vector<Index>& cells) {
   for (const Index cell : cells) touched_[cell] = 1;
   std::size_t looked_at = 0;
@@ -190,7 +190,7 @@ bool CollarReview::judge_changed_triangles(const std::vector<Index>& cells) {
   return true;
 }
 
-// Returns the known collar triangle of a face, seen from either side; null if there is none.
+// Returns the record of a face that is a collar triangle, seen from either side; null if there is none.
 const CollarTriangle* CollarReview::known_triangle(FaceId face) const {
   const FaceId other = mesh_.opposite(face);
   if (other == no_face) return nullptr;
@@ -223,7 +223,7 @@ bool CollarReview::poor_edge(const CollarTriangle& t, Index a, Index b) const {
 }
 
 // Finds vertices of creases (usually centres of balls) that are vertices of cells outside the collars: the
-// sphere around them has no mesh vertices near by yet.
+// spheres around them have too few mesh vertices yet.
 void CollarReview::find_exposed_vertices(const std::vector<Index>& cells) {
   for (const Index cell : cells) {
     if (surface_.region(cell) == 0 || cells_.inside(cell)) continue;

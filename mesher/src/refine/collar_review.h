@@ -14,13 +14,13 @@ namespace collarmesh {
 /// The part that reviews the collar surface whenever all other work is done (paper, section 4), and queues
 /// its faults: poor triangles, and vertices of creases that are vertices of cells outside the collar.
 ///
-/// State: the known triangles of the collar surface since the last review. Invariant, once started: a cell
-/// near collars is touched if it was created since the last review, or if one of its vertices has joined a
-/// feature since then. So a review only judges the triangles around touched cells, and triangles whose
-/// candidates it has handed out; the cost of all reviews together is proportional to the created cells and
-/// the candidates. The loop asks for reviews, takes candidates, and reports insertions and vertices that join
-/// features. A fault without a candidate is not reviewed again before its cells change: it stays, and the
-/// certificate reports it.
+/// State: the triangles of the collar surface as reviews have judged them, and the cells touched since the
+/// last review. Invariant, once started: a cell near collars is touched if it was created since the last
+/// review, or if one of its vertices has joined a feature since then. So a review only judges the triangles
+/// around touched cells, and triangles whose candidates it has handed out; the cost of all reviews together
+/// is proportional to the created cells and the candidates. The loop asks for reviews, takes candidates, and
+/// reports insertions and vertices that join features. A fault without a candidate is not reviewed again
+/// before its cells change: it stays, and the certificate reports it.
 class CollarReview {
  public:
   /// Keeps references to all arguments. Calls `stopped` now and then. The first review completes the system
@@ -37,8 +37,8 @@ class CollarReview {
         queue_(queue),
         stopped_(std::move(stopped)) {}
 
-  /// Reviews the surface. Returns false if nothing was queued: either no fault can be repaired, or the last
-  /// queued items changed nothing. Precondition: the queue is empty.
+  /// Reviews the surface. Returns false if nothing was queued: no fault is left to repair, the items
+  /// queued last changed nothing, or the refinement was stopped. Precondition: the queue is empty.
   bool check();
   /// Returns the point to insert for this queue item: it repairs a poor triangle or shields an exposed crease
   /// vertex. Returns nothing if there is no such point, or if recent changes must be reviewed first.
@@ -82,9 +82,9 @@ class CollarReview {
   std::vector<Index> touched_cells_;    // the touched cells, and some that no longer exist or no longer are
                                         // touched
   CollarTriangles triangles_;
-  std::vector<FaceId> poor_;                  // triangles to review, inside regions
+  std::vector<FaceId> poor_;                  // poor triangles to queue, in regions
   std::unordered_map<Index, Index> ball_at_;  // by mesh vertex on a crease: a ball that contains it
-  std::vector<Index> exposed_;                // exposed mesh vertices on creases, to review
+  std::vector<Index> exposed_;                // mesh vertices on creases, to queue if exposed
   std::vector<Index> scratch_;
 };
 

@@ -15,13 +15,13 @@ namespace {
 // inserting points of lower dimension first keeps collars small.
 constexpr double arc_reach = 0.7;
 // A representation point is not moved onto an arc if a mesh vertex is already this close to the arc's point,
-// relative to the radius of the empty ball.
+// relative to the distance of the representation point from its nearest mesh vertex.
 constexpr double arc_clearance = 0.5;
-// Least distance of an arc's point from mesh vertices where a smooth patch bends, in distance tolerances.
+// Where a smooth patch bends: least distance of an arc's point from mesh vertices, in distance tolerances.
 constexpr double bent_clearance = 0.1;
 // Least distance of other points on the collar surface from mesh vertices, in radii of their ball.
 constexpr double clearance_in_radii = 1e-3;
-// Edges to the centre that are longer than this, in radii of the ball, are divided where they leave a patch.
+// Edges to the centre that leave a patch are divided only if they are longer than this, in radii of the ball.
 constexpr double divisible_spoke = 1.05;
 
 double radians(double degrees) { return degrees * 3.14159265358979323846 / 180; }
@@ -109,7 +109,7 @@ std::optional<CollarTriangle> CollarSurface::triangle(FaceId outer) {
   return CollarTriangle{outer, generation, parts[0].ball, p + parts[0].from * d, several};
 }
 
-// Judges the triangle alone, without its neighbours.
+// Returns whether a triangle is poor regardless of its neighbours, apart from bends.
 bool CollarSurface::poorly_represented(const CollarTriangle& t) {
   const Index outer = cell_of(t.face);
   const FaceId inner = mesh_.opposite(t.face);
@@ -216,8 +216,8 @@ std::optional<Point> CollarSurface::arc_point(const CollarBall& ball, Index patc
   return std::nullopt;
 }
 
-// Returns whether an edge of a star crosses a patch. Only patches through the ball's centre are near enough;
-// others are three radii away.
+// Returns whether an edge of a star crosses a patch. An edge near the ball can only cross patches through the
+// ball's centre; others are three radii away.
 bool CollarSurface::crosses_patch(const CollarBall& ball, Index a, Index b) {
   const Point &p = mesh_.point(a), &q = mesh_.point(b);
   const double reach = gap_per_radius * ball.radius;
@@ -243,11 +243,11 @@ bool CollarSurface::crosses_patch(const CollarBall& ball, Index a, Index b) {
   });
 }
 
-// Returns whether an edge leads to another sheet. A smooth patch may pass through a ball's centre in several
-// sheets, so an edge may begin on one and cross another. Balls are made so small that a sheet deviates from
-// its chords by at most h over a radius r (collar/flatness.cpp), and its triangles are tilted by about 4 h /
-// r. So a point of the same sheet is off the triangle's plane by less than 8 h, where h is at most half the
-// distance tolerance, and by less than r / 2.
+// Returns whether p lies on another sheet of a patch than a triangle does. A smooth patch may pass through a
+// ball's centre in several sheets, so an edge may begin on one and cross another. Balls are made so small
+// that a sheet deviates from its chords by at most h over a radius r (collar/flatness.cpp), and its triangles
+// are tilted by about 4 h / r. So a point of the same sheet is off the triangle's plane by less than 8 h,
+// where h is at most half the distance tolerance, and by less than r / 2.
 bool CollarSurface::on_another_sheet(const CollarBall& ball, const Point& p, Index triangle) const {
   const auto [a, b, c] = nodes_.hierarchy().corners(triangle);
   const Index patch = domain_.plc.triangles[triangle].patch;

@@ -40,12 +40,12 @@ class CollarSurface {
 
   /// Returns whether a triangle is poor regardless of its neighbours. Records where it bends.
   bool poor_alone(CollarTriangle& t) { return poorly_represented(t) || bends(t); }
-  /// Returns whether the book tet between two triangles of consecutive balls would be inverted, or its angle
-  /// too large.
+  /// Returns whether two triangles of consecutive balls lie in different regions, or whether the book tet
+  /// between them would be inverted or have too large a dihedral angle. Always false in the exterior.
   bool poor_book(const CollarTriangle& t, const CollarTriangle& u, const std::array<Index, 2>& edge) const;
-  /// Returns whether an edge leads from one sheet of a smooth patch to another. Always false for edges so
-  /// long that `largest_sagitta` permits more than the distance tolerance does. Precondition: the edge and
-  /// the ball's centre form a face between two regions.
+  /// Returns whether an edge leads from one sheet of a smooth patch to another. Always false if
+  /// `largest_sagitta` times the edge's length reaches the distance tolerance. Precondition: the edge and the
+  /// ball's centre form a face between two regions.
   bool spans_sheets(const CollarBall& ball, Index a, Index b) const;
   /// Returns the point that repairs a triangle: its representation point, or the nearest point of an arc
   /// where a patch through the ball's centre meets the sphere. Returns nothing if there is no such point, or

@@ -13,8 +13,8 @@ namespace collarmesh {
 
 namespace {
 
-// A curve gets inner seeds if its length exceeds its chord by this factor, because its first ball would not
-// cover it.
+// A curve gets inner seeds if its length exceeds its chord by this factor, because the ball of a single
+// subsegment might not cover it.
 constexpr double seeded_length_per_chord = 1.2;
 // A subsegment is split at most this share of its ball's radius away from the ball's centre.
 constexpr double subsegment_offset = 0.1;
@@ -176,8 +176,8 @@ Index CurveChains::add(Index curve, const std::array<End, 2>& ends, Index near) 
   return index;
 }
 
-// Records the piece at an unresolved point. The pieces at a vertex of the complex are found through its
-// curves.
+// Records a piece that ends at an unresolved point. The pieces that end at a vertex of the complex are found
+// through its curves.
 void CurveChains::note_piece(Index point, Index subsegment) {
   if (point == none || point < domain_.plc.vertices.size()) return;
   if (point >= piece_at_.size()) piece_at_.resize(points_.size(), none);
@@ -255,13 +255,14 @@ double CurveChains::tolerance_of(const Subsegment& s) const {
   }
 }
 
-// Returns whether the curve turns so far that the subsegment's ball may not contain all of it.
+// Returns whether the subsegment's part of the curve turns so far that its ball may not contain all of that
+// part. Always false on creases.
 bool CurveChains::turns_too_far(const Chained& s) const {
   if (collars_.is_crease_curve(s.piece.curve)) return false;
   return leaves_chord(s, largest_sagitta * distance(place(s, 0), place(s, 1)));
 }
 
-// Returns whether the curve deviates from its chord by more than `sagitta`.
+// Returns whether the subsegment's part of the curve deviates from its chord by more than `sagitta`.
 bool CurveChains::leaves_chord(const Chained& chained, double sagitta) const {
   const Subsegment& s = chained.piece;
   if (domain_.plc.curves[s.curve].straight) return false;

@@ -21,7 +21,7 @@
 namespace collarmesh {
 
 /// The chains of curves: each curve is cut into subsegments. Until a subsegment is split, its protective ball
-/// keeps other features' samples away.
+/// keeps vertices of other features away.
 ///
 /// Chains run ahead of the mesh, like the paper's one-dimensional meshes: a subsegment ends at mesh vertices
 /// or at unresolved points. A subsegment that a vertex encroaches is split by an unresolved point, which is
@@ -29,9 +29,9 @@ namespace collarmesh {
 /// no protective ball contains a vertex for long. Invariants, between insertions: the subsegments of a curve
 /// without a collar cover it; a subsegment whose ball contains a mesh vertex, or that is resolved and too
 /// coarse, is in the queue; each ball is found from the mesh vertex nearest to its centre. The loop reports
-/// insertions and resolved points, and splits; SurfaceCheck asks for further splits; CollarCreator clips
-/// chains, and in the end replaces a crease's chain by its collar. It learns of the chains of creases through
-/// OpenCreases.
+/// insertions and resolved points, and makes the splits; SurfaceCheck asks for further splits; CollarCreator
+/// clips chains, learns of the chains of creases through OpenCreases, and in the end replaces a crease's
+/// chain by its collar.
 class CurveChains {
  public:
   /// A place at which a subsegment will be split.
@@ -68,7 +68,7 @@ class CurveChains {
   /// Returns the subsegment in whose protective ball a candidate with this zone lies deepest (paper,
   /// Procedure 2); none if it encroaches none.
   Index encroached(const ConflictZone& zone, const Candidate& candidate) const;
-  /// Returns whether the centre of any ball lies in the Voronoi cell of this mesh vertex.
+  /// Returns whether the centre of any protective ball lies in the Voronoi cell of this mesh vertex.
   bool any_at(Index mesh_vertex) const { return balls_.first_at(mesh_vertex) != none; }
   /// Returns the end of a subsegment to insert instead of a candidate that encroaches the subsegment: of the
   /// unresolved ends that are medial, the one nearer to the candidate. None if there is no such end.
@@ -82,7 +82,8 @@ class CurveChains {
   // 3. if the place already has a vertex (`start` is none): `can_join` and, if that returns true, `split_at`
   //    after the vertex has joined the curve;
   //    if the vertex is to be inserted later: `split_ahead`;
-  //    if the candidate warps: for an item of the queue `queue_again`, after the other point was inserted;
+  //    if the candidate warps: `queue_again` after the other point was inserted, if the subsegment came from
+  //    the queue;
   //    otherwise: `drop_ball`, force_insert and `split_at`.
   /// Returns where to split a subsegment. If its ball is at the floor, gives up and returns nothing.
   /// Precondition: the subsegment exists (`is_due`, or `encroached`).
@@ -101,8 +102,9 @@ class CurveChains {
 
   /// Reports that an unresolved point has become a mesh vertex; updates the subsegments that end there.
   void point_resolved(Index point);
-  /// Reports a new vertex. Balls move to it if it is nearest to them, and subsegments whose balls contain it
-  /// are queued. Precondition: the mesh has the vertex, and its unresolved point, if any, is resolved.
+  /// Reports a new vertex. Balls are found from it if it is nearest to their centres, and subsegments whose
+  /// balls contain it are queued. Precondition: the mesh has the vertex, and its unresolved point, if any, is
+  /// resolved.
   void cells_made(const ConflictZone& zone, Index vertex);
   /// Judges all subsegments because sizes have changed everywhere.
   void judge_all();
@@ -204,7 +206,7 @@ class CurveChains {
   GrowingArray<Chained> subsegments_;
   std::vector<Index> free_subsegments_;
   std::vector<std::array<Index, 2>> chain_ends_;  // by curve: its first and last subsegment
-  GrowingArray<Index> piece_at_;                  // by unresolved point on a curve: the piece that ends there
+  GrowingArray<Index> piece_at_;                  // by unresolved point on a curve: a piece that ends there
   std::vector<ClippedEnd> clipped_ends_;
 };
 

@@ -19,7 +19,7 @@ struct Domain {
   /// Returns whether the mesh must meet exactly the assumptions of the paper's proofs.
   bool is_papers() const { return options.profile == Profile::paper; }
   /// Returns the radius of the smallest ball that may be destroyed at a place; it stops refinement that would
-  /// not terminate. It is `floor` or, near tiny edges of the complex, a share of the shortest one.
+  /// not terminate. It is `floor` or, near tiny edges of the complex, a share of the shortest of these.
   double floor_at(const Point& p) const;
   /// Returns whether a ball around this place is too small to be destroyed.
   bool at_floor(const Point& p, double squared_radius) const {

@@ -16,7 +16,8 @@ namespace collarmesh {
 
 namespace {
 
-/// Orders cells by the smallest number of their points; cells for which it is the same keep their order.
+/// Returns the order of tets or faces by the smallest number of their points; if it is the same, they keep
+/// their order.
 std::vector<Index> order_by_least_point(const std::vector<Index>& least_points, std::size_t points) {
   return order_by_group(points, least_points.size(), [&](std::size_t i) { return least_points[i]; });
 }
@@ -49,7 +50,7 @@ class Extraction {
   }
 
  private:
-  // Finds the cells of regions outside collars; stitched tets come after them.
+  // Finds the cells that become tets, and the vertices of all tets. Stitched tets come after the cells.
   void find_tets() {
     std::vector<std::uint8_t> used(refined_.mesh.vertex_count(), 0);
     const auto use = [&](const std::array<Index, 4>& corners) {
@@ -167,7 +168,8 @@ class Extraction {
   }
 
   // Adds a face, oriented so that the normal points from the first region to the second. The regions are in
-  // the patch's order, except that the inner region comes first at the boundary of the domain.
+  // the patch's order, except that the inner region comes first at the boundary of the domain. A face
+  // with the same region on both sides has the patch's normal.
   void add_face(FaceId face) {
     const RefinedMesh& mesh = refined_.mesh;
     const Index cell = cell_of(face), beyond = cell_of(mesh.opposite(face));
@@ -206,8 +208,8 @@ class Extraction {
     permute(mesh_.face_tag, order);
   }
 
-  // Removes the patch from the features of vertices that no face has. They lie in the plane of the patch, but
-  // they may be outside it, as the middle of a triangle can.
+  // Removes the feature of vertices on a patch that belong to no face. Such vertices lie in the plane of the
+  // patch, but possibly beyond its border.
   void forget_features_off_the_surface() {
     std::vector<bool> on_surface(mesh_.points.size(), false);
     for (const auto& face : mesh_.faces)

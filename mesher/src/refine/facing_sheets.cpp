@@ -20,10 +20,10 @@ constexpr double widest_gap_per_radius = 0.9;
 constexpr double least_spacing_per_radius = 0.35;
 // Least cosine between the direction across the gap and the normals of sheets that face each other.
 constexpr double least_facing = 0.97;
-// Cells that span a gap have a smaller ratio of height to longest edge than this.
+// In cells that span a gap, the ratio of height to longest edge is below this.
 constexpr double largest_narrowness = 0.5;
-// Beneath a vertex, a curve is split only in the middle part of a subsegment, at least this share away from
-// its ends.
+// Beneath a vertex, a curve is split only in the middle part of a subsegment, at least this share of its
+// length away from its ends.
 constexpr double least_part = 0.25;
 
 using Corners = std::array<Point, 4>;

@@ -14,7 +14,7 @@ namespace collarmesh {
 /// sampled alone, each sample would encroach the other sheet until the distance of samples on both is about
 /// the width of the gap. So a triangle or subsegment that a vertex encroaches from across a gap is split
 /// beneath that vertex. Samples in such pairs leave the balls of the other sheet's triangles and subsegments
-/// empty, however large these balls are; only the quality of cells in a thin part requires smaller ones.
+/// empty, however large these balls are; only the quality of cells in a thin part requires smaller balls.
 /// Outside the regions that quality is not needed, so there the edge between the vertices of a pair counts in
 /// no radius-edge ratio. In the paper's profile there are no pairs.
 ///
@@ -32,11 +32,13 @@ class FacingSheets {
         surface_(surface),
         contacts_(domain.plc) {}
 
-  /// Returns the point of a restricted triangle's patch that is beneath a vertex of the triangle on another
-  /// sheet; nothing if no vertex faces the patch across a narrow gap.
+  /// Returns the point of a restricted triangle's patch beneath a vertex of the triangle that lies on another
+  /// sheet. Returns nothing if no vertex faces the patch across a narrow gap, or if other vertices are too
+  /// close to the point.
   std::optional<Candidate> candidate_across(FaceId face);
   /// Returns the parameter of a subsegment's place nearest to a vertex that encroaches the subsegment from
-  /// across a gap; nothing if there is no gap between them. `along` is the direction of the subsegment.
+  /// across a gap; nothing if there is no narrow gap between them, or if the place is near an end of the
+  /// subsegment. `along` is the direction of the subsegment.
   /// Precondition: the vertex is none of its ends.
   std::optional<double> parameter_across(const Subsegment& s, const Vector& along, Index vertex) const;
 

@@ -14,8 +14,8 @@ namespace collarmesh {
 
 /// The gap size, found by exploring the mesh (paper, Procedure 4). The search goes breadth first from the
 /// Voronoi cell that contains the point, and computes the distances of the elements that meet each cell. It
-/// ends when all cells that meet the ball from the point to the nearest witness are explored. Features that
-/// contain the point are left out as a whole, however finely they are tessellated.
+/// ends when all cells that meet the ball around the point through the nearest witness are explored. Features
+/// that contain the point are left out as a whole, however finely they are tessellated.
 class GapExplorer final : public GapSize {
  public:
   /// Keeps all by reference.
@@ -28,7 +28,7 @@ class GapExplorer final : public GapSize {
     find_borders();
   }
 
-  /// Makes the next query start near this mesh vertex. Each query starts near the last one.
+  /// Makes the next query start near this mesh vertex, not near the place of the query before.
   void start_near(Index vertex) { near_ = vertex; }
 
   double at_vertex(Index vertex, double bound = INFINITY) override;
@@ -36,8 +36,8 @@ class GapExplorer final : public GapSize {
 
   /// Returns whether a vertex or curve of the complex is isolated in the Voronoi cell of a mesh vertex
   /// (paper, Definition 6): whether every feature that meets the cell contains the vertex or curve. A feature
-  /// does not count if its whole part in the cell lies in one of these balls: the cell of a point on the
-  /// sphere of a vertex ball reaches into the ball, where features come arbitrarily close. The witness
+  /// does not count if its whole part in the cell lies in one of the balls `except`: the cell of a point on
+  /// the sphere of a vertex ball reaches into the ball, where features come arbitrarily close. The witness
   /// against isolation is stored, and tested first in the next query.
   bool isolated(const Feature& vertex_or_curve, Index cell, std::span<const CollarBall> except = {});
   /// Returns whether the last witness against the isolation of this vertex or curve is still in the cell
@@ -65,8 +65,9 @@ class GapExplorer final : public GapSize {
 
   void find_borders();
   double explore(const Feature& at, const Point& x, double bound);
-  /// Calls witness(a, b, c) with the points of each element below the nodes that is nearer to x than the
-  /// bound and whose features do not contain `at`. `witness` may lower the bound.
+  /// Calls witness(a, b, c) with the points of each element below the nodes, or of parts of its border, whose
+  /// features do not contain `at`, if the element's box is nearer to x than the bound. `witness` may lower
+  /// the bound.
   template <class Found>
   void interview(std::span<const Index> nodes, const Feature& at, const Point& x, const double& squared_bound,
                  const Found& witness);

@@ -29,7 +29,7 @@ struct KeptNumbers {
     }
   }
   bool keeps(Index i) const { return number[i] != none; }
-  // Keeps and renumbers the features of a list; it stays sorted.
+  // Drops removed features from a list and renumbers the others; the list stays sorted.
   void apply(std::vector<Index>& list) const {
     std::erase_if(list, [&](Index i) { return !keeps(i); });
     for (Index& i : list) i = number[i];
@@ -90,7 +90,7 @@ class FeaturesInside {
   SurfaceTolerance tolerance(const SurfaceTolerance& whole) const {
     return reduced_ ? whole.of_patches(complex_, patches_) : whole;
   }
-  /// Replaces the features of a mesh of `plc()` by those of the whole complex.
+  /// Replaces the numbers of features in a mesh of `plc()` by those in the whole complex.
   void restore_numbers(TetMesh& mesh) const {
     if (!reduced_) return;
     const auto restore = [](Index& feature, const std::vector<Index>& whole) {
@@ -107,7 +107,7 @@ class FeaturesInside {
 
  private:
   const Plc& complex_;
-  std::optional<Plc> reduced_;                      // nothing if no feature lies outside
+  std::optional<Plc> reduced_;                      // nothing if no patch lies outside
   std::vector<Index> vertices_, curves_, patches_;  // by kept feature: its number in the whole complex
 };
 

@@ -13,10 +13,10 @@ namespace collarmesh {
 
 /// Target edge lengths: those asked for (Sizing) and, with gradation, one at every mesh vertex. The lengths
 /// at vertices grow by at most `gradation` per unit of distance from places where they are small.
-/// When a vertex is inserted, it gets the smallest size that its neighbours allow; sizes that decrease later
-/// are spread over the mesh when the queue is empty. The parts that judge cells, triangles and subsegments
-/// query sizes; TriangleQuality imposes sizes found on the surface; the loop reports insertions and spreads
-/// sizes.
+/// A new vertex gets the smallest size that its neighbours, its feature and its regions impose; sizes that
+/// decrease later are spread over the mesh when the queue is empty. The parts that judge cells, triangles and
+/// subsegments query sizes; TriangleQuality imposes sizes found on the surface; the loop reports insertions
+/// and spreads sizes.
 class GradedSizes {
  public:
   /// Keeps all by reference.

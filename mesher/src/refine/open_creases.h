@@ -28,8 +28,7 @@ class OpenCreases {
   struct Chain {
     std::vector<ChainLink> links;           ///< all links so far
     std::size_t unresolved = 0;             ///< number of its points that the crease still waits for
-    bool split = false;                     ///< a subsegment was split before all of these points were
-                                            ///< resolved
+    bool split = false;                     ///< a subsegment has been split
     std::array<Index, 2> ends{none, none};  ///< unresolved points where the crease leaves the balls at its
                                             ///< ends
   };

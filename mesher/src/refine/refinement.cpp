@@ -75,7 +75,7 @@ MeshStatus Refinement::run() {
   // Whether the collar surface is being repaired. This takes many small steps, so let it settle before
   // everything else is checked again.
   bool mending_collars = false;
-  // During the first pass the collar surface is not used, because blocks do not report to it.
+  // Only the first pass refines blocks: they do not report to the collar surface, which later passes use.
   bool first_pass = true;
   if (trace_) trace_->record("box");
   while (!outcome_.stopped()) {
@@ -233,7 +233,8 @@ void Refinement::split_ahead(Index subsegment) {
     curves_.split_ahead(*split);
 }
 
-// Adds the curve to the features of the vertex at the place of a split.
+// Splits a subsegment by a vertex that is already at the place of the split. Returns false if the vertex is
+// an end of the subsegment.
 bool Refinement::join(const CurveChains::Split& split) {
   if (!curves_.can_join(split)) return false;
   mesh_.lower_feature(split.vertex, split.candidate.feature);

@@ -43,8 +43,8 @@ class Refinement {
 
   /// Refines until nothing is left to do, a budget is spent or the caller cancels.
   MeshStatus run();
-  /// Returns whether a run exceeded its budget (`budget_hit`) only after it had begun to bound the
-  /// radius-edge ratio in narrow cells, too.
+  /// Returns whether a run exceeded a budget (`budget_hit`) other than the time limit, and only after it had
+  /// begun to bound the radius-edge ratio in narrow cells, too.
   bool narrow_cells_are_dear() const { return narrow_cells_are_dear_; }
   /// Returns the mesh, after run() returned complete or guarantee_missed.
   Extracted extract() const;

@@ -67,7 +67,7 @@ Index RestrictedSurface::region_beyond(Index region, const Workspace& w) const {
 }
 
 // Labels one of the new cells from across the zone's border, preferably where no patch can be in between. If
-// the zone fills the whole box, starts from the box's corner. Returns the cell's index in the zone.
+// the zone fills the whole box, starts from the box's corner. Returns the cell's index in `created`.
 std::size_t RestrictedSurface::first_label(const ConflictZone& zone, Workspace& w) {
   std::size_t seed = zone.created.size();
   for (std::size_t i = 0; i < zone.created.size(); ++i) {
@@ -158,12 +158,13 @@ void RestrictedSurface::label_created_cells(const ConflictZone& zone, Index vert
   }
 }
 
-// Returns whether a border face's dual edge still crosses the single triangle that it crossed before, from
-// one label to the other. The insertion shortened the edge, so it can only lose crossings.
+// Returns whether a border face's dual edge still crosses the single triangle that it crossed before, and the
+// crossing agrees with the labels of both cells. The insertion shortened the edge, so it can only lose
+// crossings.
 bool RestrictedSurface::crosses_as_before(FaceId outer, FaceId face, Index vertex, Workspace& w) const {
   const RestrictedTriangle& t = triangle(outer);
-  // If a dual edge lies in the plane of its triangle, x may be any point of it; so the triangle is lost if
-  // the new vertex lies in the surface gap ball.
+  // If a dual edge lies in the plane of the complex's triangle, x may be any point of the edge; so the
+  // crossing is lost if the new vertex lies in the surface gap ball.
   if (t.several_sheets || squared_distance(mesh_.point(vertex), t.x) < t.squared_radius) return false;
   const int direction = nodes_.hierarchy().crossing(mesh_.circumcentre(cell_of(outer)),
                                                     mesh_.circumcentre(cell_of(face)), t.triangle);
@@ -181,8 +182,8 @@ bool RestrictedSurface::crosses_no_more(FaceId outer, FaceId face) const {
          labels_[cell_of(outer)].region == labels_[cell_of(face)].region;
 }
 
-// Checks the border faces again that were marked or whose labels require it: their dual edges have become
-// shorter, and the edges' ends are rounded anew.
+// Checks the border faces again that were marked or whose two cells have different labels: their dual edges
+// have become shorter, and the edges' ends are rounded anew.
 void RestrictedSurface::mark_border_faces(const ConflictZone& zone, Index vertex, Workspace& w) {
   for (std::size_t i = 0; i < zone.border.size(); ++i) {
     const FaceId outer = zone.outer[i];
@@ -193,7 +194,7 @@ void RestrictedSurface::mark_border_faces(const ConflictZone& zone, Index vertex
     const FaceId face = face_id(created, corner_of(zone.border[i]));
     if (was_marked && crosses_as_before(outer, face, vertex, w)) {
       mark(face, record_of(outer));
-      own_notes(face).judged = false;  // it may have been queued as a face of the destroyed cell
+      own_notes(face).judged = false;  // its queue entry may name the destroyed cell
       continue;
     }
     const bool known = was_marked && crosses_no_more(outer, face);

@@ -31,7 +31,7 @@ struct TriangleNotes {
   bool judged = false;            ///< judged since its cells last changed (TriangleQuality)
   bool given_up = false;          ///< no point could be inserted to destroy it (TriangleQuality)
   bool surface_needs_it = false;  ///< it must be split although x may lie in a collar ball (TriangleQuality)
-  bool known_near = false;  ///< no sample of it is farther from its patch than the tolerance (SurfaceCheck)
+  bool known_near = false;        ///< no tested point of it is too far from its patch (SurfaceCheck)
 };
 
 /// The restricted Delaunay triangulation of the mesh to the patches, and the regions of the cells.
@@ -105,7 +105,7 @@ class RestrictedSurface {
   /// Makes room for all cells before cells are made in blocks, and for this many records in each block's
   /// workspace.
   void divide(std::span<const std::size_t> records, std::span<Workspace> of_blocks);
-  /// Takes the workspaces back after blocks were joined.
+  /// Takes free records back from the workspaces after blocks were joined.
   void join(std::span<Workspace> of_blocks);
   // Functions for several threads, each with its own block and the block's workspace:
   /// Returns whether a block has enough records for an insertion with this zone.

@@ -141,7 +141,8 @@ bool RipAndStitch::against_patch(const std::array<Index, 3>& face, Index patch) 
 }
 
 // Returns the patch that contains all three vertices and separates these regions; none if there is none. Two
-// curves that meet at a crease can bound two such patches: then returns the nearer one.
+// curves that meet at a crease can bound two such patches: then returns the nearer one. If the regions are
+// the same, the face must lie on the patch (lies_on).
 Index RipAndStitch::patch_between(const std::array<Index, 3>& corners, Index a, Index b) const {
   const auto separates = [&](Index patch) {
     const auto& r = domain_.plc.patches[patch].regions;

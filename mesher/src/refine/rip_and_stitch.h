@@ -13,7 +13,7 @@ struct Stitched {
     std::array<Index, 4> corners;
     Index region;
     std::uint8_t collar;  ///< 1 star, 2 book
-    Tag crease;           ///< tag of the curve or vertex
+    Tag crease;           ///< tag of the crease's curve or vertex
   };
   struct Face {
     std::array<Index, 3> corners;
@@ -27,8 +27,8 @@ struct Stitched {
   std::vector<Tet> tets;
   std::vector<Face> faces;
   std::vector<Edge> edges;
-  std::vector<Index> open;  ///< mesh vertices of faces that separate regions without lying on a patch, and of
-                            ///< cells that would have a corner twice
+  std::vector<Index> open;  ///< mesh vertices of faces on no patch that separate regions or have more than
+                            ///< two tets, and of tets that would have a corner twice
 };
 
 /// Rip and stitch (paper, Procedure 5). `extract` drops the cells inside the collars, and this class makes

@@ -195,8 +195,8 @@ void SurfaceCheck::seed_missed_patch(Index patch) {
     seed(patch, domain_.points[point]);
 }
 
-// Adds a point of a patch as an unresolved point. If the point faces another sheet, there may be a vertex at
-// it already, up to rounding.
+// Adds a point of a patch as an unresolved point. Where the patch faces another sheet, a vertex of the patch
+// may be at the point already, up to rounding; because of `apart` it takes the point's place.
 void SurfaceCheck::seed(Index patch, const Point& at) {
   points_.add({.point = at, .feature = {2, patch}, .apart = domain_.floor_at(at)}, none);
 }
@@ -219,14 +219,14 @@ void SurfaceCheck::prepare_tessellation() {
   first_tessellation_point_.push_back(tessellation_.size());
 }
 
-// Returns whether the face that the point was near to at the last check still exists.
+// Returns whether the face that the point was near to at the last check is still a triangle of the patch.
 bool SurfaceCheck::still_near(const TessellationPoint& p, Index patch) const {
   if (p.near == no_face) return false;
   const Index cell = cell_of(p.near);
   return mesh_.alive(cell, p.generation) && surface_.is_marked(p.near) && surface_.patch(p.near) == patch;
 }
 
-// Brings the surface nearer to a point of a patch; `nearest` is the nearest of the patch's triangles.
+// Brings the surface nearer to a point of a patch; `nearest` is the patch's nearest triangle in the mesh.
 void SurfaceCheck::resolve(const TessellationPoint& p, Index patch, FaceId nearest) {
   constexpr double same_place = 0.1;  // share of the tolerance
   const Index vertex = mesh_.nearest_vertex(p.at, mesh_.face_vertices(nearest)[0]);
@@ -239,8 +239,8 @@ void SurfaceCheck::resolve(const TessellationPoint& p, Index patch, FaceId neare
 }
 
 // Finds the tessellation points of smooth patches that are farther from the patch's restricted triangles than
-// the tolerance. Resolves only the farthest one at each triangle, because one insertion serves all its
-// neighbours.
+// the tolerance. Resolves only the farthest one at each triangle, because one insertion also brings the
+// surface nearer to the points around.
 bool SurfaceCheck::resolve_distant_points(const std::vector<FaceId>& faces) {
   if (first_tessellation_point_.empty()) prepare_tessellation();
   std::vector<std::vector<FaceId>> faces_of(domain_.plc.patches.size());
@@ -291,8 +291,8 @@ bool SurfaceCheck::resolve_distant_points(const std::vector<FaceId>& faces) {
   return found;
 }
 
-// Returns the cells of regions, outside the collars, whose vertices all lie on features: they may be flat on
-// a patch.
+// Returns the cells in regions and outside the collars whose vertices all lie on features: they may be flat
+// on a patch.
 std::vector<Index> SurfaceCheck::cells_on_surface() const {
   return found_in_ranges<Index>(mesh_.cell_capacity(), [&](std::size_t i, std::vector<Index>& cells) {
     const auto cell = static_cast<Index>(i);
@@ -317,8 +317,8 @@ bool SurfaceCheck::flat_on_patch(Index cell) const {
   return found;
 }
 
-// Returns whether a cell has no volume except by rounding, because samples that face each other on two curves
-// of a smooth patch form rectangles. Two of its faces then lie on the patch.
+// Returns whether a cell has no volume except by rounding. Such cells arise where vertices that face each
+// other on two curves of a smooth patch form rectangles; two of their faces then lie on the patch.
 bool SurfaceCheck::has_no_volume(Index cell) const {
   if (std::popcount(surface_.marked(cell)) != 2) return false;
   const auto& v = mesh_.corners(cell);
@@ -336,7 +336,7 @@ bool SurfaceCheck::at_boundary(FaceId face) const {
 }
 
 // Queues a triangle of each cell that is flat on a patch between two regions or inside one, because the cell
-// cannot stay there. At a domain boundary relabel_flat_cells handles it.
+// cannot stay there. relabel_flat_cells handles flat cells at the domain's boundary.
 bool SurfaceCheck::check_flat_cells() {
   bool found = false;
   for (const Index cell : cells_on_surface()) {

@@ -40,7 +40,7 @@ class SurfaceCheck {
 
   /// Seeds closed patches: refinement has no border to start from there.
   void seed_closed_patches();
-  /// Runs a round. Returns false if it found nothing wrong.
+  /// Runs a round. Returns false if it found nothing wrong or has given up.
   bool check();
   /// Counts a round that found a violation. After too many rounds, gives up and returns false.
   bool another_round();
@@ -50,7 +50,7 @@ class SurfaceCheck {
 
  private:
   /// A point at which the certificate tests a smooth patch, outside collars: a corner or the centre of a
-  /// triangle. Stores a face of the mesh that it was near to.
+  /// triangle of the complex. Stores a face of the mesh that it was near to.
   struct TessellationPoint {
     Point at;
     double tolerance;

@@ -105,8 +105,8 @@ void SurfaceNodes::cells_made(const ConflictZone& zone, Index vertex, const Tria
              [&](Index v, std::vector<Index>& cells) { block.incident_cells(v, cells); });
 }
 
-// Finds the nodes of a new vertex. Its Voronoi cell is cut out of its neighbours' cells, so their nodes cover
-// it.
+// Finds the nodes of a new vertex, and filters those of its neighbours where that is due. The Voronoi cell of
+// the vertex is cut out of its neighbours' cells, so their nodes cover it.
 template <class IncidentCells>
 void SurfaceNodes::cells_made(const ConflictZone& zone, Index vertex, Workspace& w,
                               const IncidentCells& incident_cells) {
@@ -139,9 +139,9 @@ void SurfaceNodes::expect_insertions(Index vertex, std::size_t star) {
       std::min<std::size_t>(std::max(least, star / cells_per_insertion), UINT16_MAX));
 }
 
-// Finds nodes that cover the elements in the Voronoi cell of a vertex with these cells, by the box around the
-// cell's corners, widened by the rounding of circumcentres. The result is in found_. Precondition: seeds_
-// cover these elements.
+// Finds nodes that cover the elements in the Voronoi cell of the vertex at which these cells meet: the nodes
+// that meet the box around the cells' circumcentres, widened because of rounding. The result is in found_.
+// Precondition: seeds_ cover these elements.
 void SurfaceNodes::find(const std::vector<Index>& cells, Workspace& w) const {
   Box box;
   double largest = 0;

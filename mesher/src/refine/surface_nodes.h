@@ -29,7 +29,8 @@ class SurfaceNodes {
   /// Returns the nodes of that corner of a face which has the fewest. They cover everything that the face's
   /// dual edge meets.
   std::span<const Index> fewest(FaceId face) const;
-  /// Replaces `found` by the triangles that the dual edge of a face crosses, seen from the face's cell.
+  /// Replaces `found` by the triangles that the dual edge of a face crosses, in the direction out of the
+  /// face's cell.
   void crossings_of_dual_edge(FaceId face, std::vector<TriangleHierarchy::Crossing>& found) const;
   /// Replaces `found` by all triangles that a segment crosses.
   void crossings(const Point& p, const Point& q, std::vector<TriangleHierarchy::Crossing>& found) const {
@@ -43,7 +44,7 @@ class SurfaceNodes {
   void cells_made(const ConflictZone& zone, Index vertex);
 
   /// The data of a thread that inserts into blocks: scratch data, and the lists that it has made.
-  /// SurfaceNodes points into these lists, so they must exist as long as it is used.
+  /// SurfaceNodes points into these lists, so they must exist as long as SurfaceNodes is used.
   class Workspace {
    public:
     /// Returns the bytes of the lists: their sum over all threads does not depend on which thread made which.

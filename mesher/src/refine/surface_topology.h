@@ -12,7 +12,7 @@ namespace collarmesh {
 /// the triangles at a vertex are connected; the vertices lie on their patches. Sheets of a smooth patch that
 /// are closer than the distance tolerance violate this at first, because triangles may lead from one sheet to
 /// the other. Such triangles are split.
-/// State: the numbers of triangles along the complex's curves. The loop calls it at the end.
+/// State: how many triangles of each patch meet at each curve of the complex. The loop calls it at the end.
 class SurfaceTopology {
  public:
   /// Keeps all by reference.
@@ -28,7 +28,8 @@ class SurfaceTopology {
         triangles_(triangles),
         surface_check_(surface_check) {}
 
-  /// Checks the surface. Returns false if nothing was queued. Precondition: the collars are stitched.
+  /// Checks the surface and queues triangles to split. Returns false if it queued none or has given up.
+  /// Precondition: the collars are stitched.
   bool check();
 
  private:
@@ -43,7 +44,7 @@ class SurfaceTopology {
   const RipAndStitch& stitching_;
   TriangleQuality& triangles_;
   SurfaceCheck& surface_check_;
-  std::vector<std::vector<Index>> curve_sides_;  // by curve: number of triangles of each of its patches
+  std::vector<std::vector<Index>> curve_sides_;  // by curve and its patches: number of triangles at a segment
 };
 
 }  // namespace collarmesh

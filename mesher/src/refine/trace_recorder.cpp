@@ -79,7 +79,7 @@ void TraceRecorder::add_collar_surface(TraceStep& step) const {
   }
 }
 
-// Adds segments. An end that is no vertex yet becomes a point of its own.
+// Adds subsegments. An end that is no vertex yet becomes a point of its own.
 void TraceRecorder::add_segments(TraceStep& step) const {
   parts_.curves.visit_places([&](const Subsegment& s, const std::array<Point, 2>& places) {
     std::array<Index, 2> ends = s.ends;

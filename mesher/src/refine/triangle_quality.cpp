@@ -172,8 +172,8 @@ double TriangleQuality::gap_at(const RestrictedTriangle& t, double widest) {
   return gap;
 }
 
-// Returns whether the circumcentre of a triangle on a smooth patch is farther from the surface than the
-// tolerance.
+// Returns whether the circumcentre of a triangle on a smooth patch is farther than the tolerance from the
+// place where the dual edge crosses the patch.
 bool TriangleQuality::too_far(FaceId face, const RestrictedTriangle& t) const {
   if (domain_.plc.patches[surface_.patch(face)].planar) return false;
   const double tolerance = domain_.tolerance.at_triangle(t.triangle);

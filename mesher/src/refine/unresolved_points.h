@@ -10,8 +10,8 @@
 
 namespace collarmesh {
 
-/// Points that the mesh must have and does not have yet: vertices of the complex, seeds, corner points of
-/// collars.
+/// Points that the mesh must have and does not have yet: vertices of the complex, ends of subsegments, seeds,
+/// corner points of collars.
 /// Invariant: each point is found from the mesh vertex nearest to it and, unless it is dormant, is in the
 /// queue with the empty ball around it. Any part may add points. The loop resolves them when their turn has
 /// come or when a candidate warps to them.
@@ -27,7 +27,8 @@ class UnresolvedPoints {
     double apart = 0;      ///< a vertex of the same patch nearer than this takes the point's place
   };
 
-  /// Keeps all by reference. `theta`: how far to warp (paper, Procedure 2).
+  /// Keeps all by reference. `theta`: how far to warp, in radii of the ball to destroy
+  /// (paper, Procedure 2).
   UnresolvedPoints(const RefinedMesh& mesh, double theta, WorkQueue& queue)
       : mesh_(mesh), queue_(queue), theta_(theta) {}
 
@@ -62,10 +63,10 @@ class UnresolvedPoints {
     const Unresolved& p = points_[point];
     return p.vertex != none ? p.vertex : objects_[p.object].vertex;
   }
-  /// Returns whether a queue entry with this stamp is current. If not, the mesh has become finer there since:
-  /// queues the point again, because other points may have larger balls now.
+  /// Returns whether a queue entry with this stamp is current. If the point is still needed, but the mesh has
+  /// become finer there since, queues it again, because other points may have larger balls now.
   bool is_due(Index point, std::uint32_t stamp);
-  /// Queues a point again, if it is still needed, because another point was inserted instead.
+  /// Queues a point again if it is still needed. Call it after another point was inserted instead.
   void queue_again(Index point) {
     if (points_[point].object != none) queue(point);
   }
@@ -75,7 +76,8 @@ class UnresolvedPoints {
   void resolve(Index point, Index vertex);
 
   /// Returns the point that a candidate with this zone warps to (paper, Procedure 2): of the points within
-  /// theta r of the ball's centre, the one of lowest containment dimension. None if there is no such point.
+  /// theta r of the ball's centre whose dimension is lower than the candidate's, one of the lowest dimension,
+  /// the nearest of several. None if there is no such point.
   Index warp_target(const ConflictZone& zone, const Candidate& candidate) const;
   /// Returns the only unresolved vertex of the complex in the Voronoi cell of this mesh vertex; none if there
   /// are several or none.

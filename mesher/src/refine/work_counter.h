@@ -8,7 +8,7 @@
 namespace collarmesh {
 
 /// A counter of the cost of insertions, on request (MeshOptions::count_work): the cells that one insertion
-/// destroys, the size of the mesh on the way, and the insertions made while a skinny cell waited.
+/// destroys, the cells per vertex on the way, and the insertions made too early, while a skinny cell waited.
 ///
 /// State: the extremes so far. The loop reports insertions and rounds of blocks.
 class WorkCounter {

@@ -23,8 +23,8 @@ void Operations::insert_in_cavity(Index tet, double least, Change& change) {
   }
 }
 
-// Extends a cavity by the tet behind the worst new tet, as long as that raises the worst quality. Then
-// proposes a vertex in the cavity.
+// Extends a cavity by the tet across the hull face of the worst new tet, as long as that raises the worst
+// quality. Then proposes a vertex in the cavity, if all new tets are good enough.
 void Operations::grow_and_insert(std::vector<Index> cavity, double least, Change& change) {
   if (!find_cone_of_cavity(cavity)) return;
   auto [place, quality] = best_place(centre_of_hull(), none, everywhere, -1);

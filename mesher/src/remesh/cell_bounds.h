@@ -51,9 +51,9 @@ class CellBounds {
     if (creases_.touch(corners)) return dihedral_cosines(p).largest_angle >= cosine_;
     return !narrow_ || ratio_holds(p) || narrow_->contain(p, corners);
   }
-  /// Returns whether `allow` forbids any thin tets.
+  /// Returns whether `allow` may forbid tets that keep the bounds on thin tets.
   bool forbid_thin_tets() const { return narrow_.has_value() || tight_ || mesh_ != nullptr; }
-  /// Returns whether the tet needs an interior node and has all corners on surfaces.
+  /// Returns whether each tet needs an interior node, but this one has all corners on surfaces.
   bool lacks_interior_node(const std::array<Index, 4>& corners) const {
     return mesh_ != nullptr && std::ranges::all_of(corners, [this](Index v) { return on_surface(v); });
   }

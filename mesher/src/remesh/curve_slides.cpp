@@ -44,7 +44,7 @@ void CurveSlides::find_all_places() const {
       if (plc_.curves[c].ends[i] != none) ends[i] = point_of[plc_.curves[c].ends[i]];
     if (!vertices[c].empty()) find_places(c, vertices[c], ends);
   }
-  // Counts only neighbours on the curve that are joined by an edge.
+  // Keeps only neighbours on the curve that are joined by an edge.
   std::vector<std::array<Index, 2>> edges;
   for (const auto& e : mesh_.edges) edges.push_back(sorted(e));
   std::ranges::sort(edges);
@@ -71,7 +71,7 @@ void CurveSlides::find_places(Index curve, std::vector<Index>& vertices,
   }
 }
 
-// Returns the arc length to a neighbour, positive.
+// Returns the arc length, positive, from a vertex to its neighbour behind (side 0) or ahead (side 1).
 double CurveSlides::way_to_neighbour(Index vertex, unsigned side) const {
   const Index neighbour = places_[vertex].neighbours[side];
   const Index curve = mesh_.features[vertex].feature;
@@ -164,7 +164,8 @@ void CurveSlides::divided(Index vertex, const Middle& middle) {
   }
 }
 
-// Returns whether the edge ab fits the part of a curve that starts at `from` and has the arc length `way`.
+// Returns whether the edge ab and a part of a curve are within the tolerance of each other. The part starts
+// at `from` and has the arc length `way`.
 bool CurveSlides::edge_fits(Index curve, double from, double way, const Point& a, const Point& b) const {
   const auto& lengths = paths_.lengths(curve);
   const double length = lengths.back();

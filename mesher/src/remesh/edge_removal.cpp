@@ -9,7 +9,7 @@ namespace collarmesh::remeshing {
 
 namespace {
 
-// Four points are in one plane when their volume is below this share of their longest edge cubed.
+// Four points count as coplanar if six times their volume is at most this share of their longest edge cubed.
 constexpr double flat_volume = 1e-13;
 
 }  // namespace
@@ -23,7 +23,8 @@ double Operations::new_quality(const std::array<Index, 4>& v, double above) cons
 }
 
 // Triangulates the polygon around the edge ab. Each triangle makes two tets, with a and with b; the worst of
-// all these tets is as good as possible (Klincsek 1980). Cost: the polygon's vertices cubed.
+// all these tets is as good as possible (Klincsek 1980). Returns its quality; -1 if none is above `above`.
+// Cost: the polygon's vertices cubed.
 double Operations::triangulate(Index a, Index b, const Polygon& polygon, bool closed, double above) {
   const std::size_t n = polygon.size();
   const auto& points = mesh_.points;
@@ -85,8 +86,8 @@ void Operations::remove_edge(Index tet, unsigned i, unsigned j, Change& change,
   if (n > largest_ring || (ring_.closed && m < 3)) return;
   // The mesh faces at the edge, which must be preserved, each with the place of its third corner in the link.
   std::vector<std::pair<std::size_t, Index>> kept;
-  // If `change` is at least as good as this tet, it is at least as good as the worst tet at the edge, too;
-  // then that tet's quality need not be known.
+  // If `change` is at least as good as this tet, it is at least as good as the worst tet at the edge, too.
+  // The quality of that worst tet need not be known then.
   const bool known = anyhow_above || (!change.is_none() && change.quality >= quality(tet));
   double worst = known ? -INFINITY : INFINITY;
   for (std::size_t k = 0; k < n; ++k) {

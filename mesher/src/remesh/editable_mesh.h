@@ -25,7 +25,7 @@ struct Change {
   Kind kind = Kind::none;
   double quality = 0;                   ///< quality of the worst new tet
   TetComplex::Replacement replacement;  ///< has only faces if a vertex moves
-  std::vector<Index> read;              ///< further tets on which the change, or the refusal, depends
+  std::vector<Index> read;              ///< further tets that were read to propose or refuse a change
   Index vertex = none;                  ///< the vertex that is moved or removed
   Point place{};                        ///< new place of the moved or inserted vertex
   double way = 0;                       ///< arc length by which a vertex on a curve slides
@@ -43,7 +43,7 @@ struct Change {
 /// tets back in the end. Several threads may read it while no change is applied.
 class EditableMesh {
  public:
-  /// Keeps the mesh and the complex by reference. Curves that turn by half a circle or more keep
+  /// Keeps the mesh and the complex by reference. Curves that turn by half a circle or more keep at least
   /// `edges_per_hole` edges to a full circle. `neighbours` as in TetComplex, `lower_where_forced` as in
   /// Bounds.
   EditableMesh(TetMesh& mesh, const Plc& meant, const SurfaceTolerance& tolerance, double edges_per_hole = 0,
@@ -55,8 +55,8 @@ class EditableMesh {
         forced(forced_edges_of(meant, mesh, lower_where_forced)),
         kept_(patches_to_keep(meant, mesh)) {}
 
-  /// Makes an editable mesh with the tolerance of these bounds; if they have none, with the tolerance for any
-  /// size.
+  /// Makes an editable mesh with the surface tolerance that these bounds give a mesh of unknown target edge
+  /// length.
   EditableMesh(TetMesh& mesh, const Plc& meant, const Bounds& bounds, double edges_per_hole = 0,
                const KnownNeighbours& neighbours = {})
       : EditableMesh(mesh, meant, tolerance_of_any_size(meant, bounds), edges_per_hole,
@@ -92,7 +92,7 @@ class EditableMesh {
   }
   bool is_fixed(Index vertex) const { return vertex < fixed_.size() && fixed_[vertex]; }
 
-  /// Leaves tets unchanged if all their corners are among these vertices.
+  /// Leaves tets unchanged from now on if all their corners are among these vertices.
   void leave(std::vector<bool> vertices) { left_ = std::move(vertices); }
   bool leaves(const TetComplex::Tet& tet) const {
     return !left_.empty() &&

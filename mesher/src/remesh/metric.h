@@ -34,7 +34,7 @@ class Metric {
     const double unit = target(a, b);
     return squared_norm(edge) > length * length * (unit * unit);
   }
-  /// Returns the length of a vector inside a tet.
+  /// Returns the length of a vector inside a tet, in units of the tet's target length.
   double length(const std::array<Index, 4>& tet, const Vector& way) const { return norm(way) / target(tet); }
   /// Returns a volume inside a tet in units of the tet's target length cubed.
   double volume(const std::array<Index, 4>& tet, double in_space) const {

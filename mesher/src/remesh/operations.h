@@ -11,9 +11,10 @@
 
 namespace collarmesh::remeshing {
 
-/// The local operations. Each writes its proposal into `change` if it raises the smallest quality in its
-/// cavity above that of `change` and keeps every guarantee. Operations named "anyhow", or asked to
-/// work anyhow, need not raise the smallest quality. Each thread has its own object.
+/// The local operations. Each writes its proposal into `change` if it keeps every guarantee, and if its worst
+/// new tet is better than the worst old tet of its cavity and than the worst new tet of the proposal that
+/// `change` holds. Operations named "anyhow", or asked to work anyhow, may make the worst tet worse. Each
+/// thread has its own object.
 class Operations {
  public:
   /// Keeps references to both arguments.
@@ -42,10 +43,10 @@ class Operations {
   /// Moves a vertex within its patch to a place where it faces another vertex of its tets, if the worst of
   /// these tets becomes better. In thin places only vertices that face each other permit long edges.
   void move_to_face(Index vertex, Change& change);
-  /// Inserts a vertex on an edge inside a region or a patch, at the best place, if the tets around it are all
-  /// better than `least`.
+  /// Inserts a vertex on an edge inside a region or a patch, at the best place, if all new tets are better
+  /// than `least`.
   void split_edge(Index a, Index b, double least, Change& change);
-  /// Inserts a vertex like `split_edge`, even if the tets at the edge are better now.
+  /// Inserts a vertex like `split_edge`, even if the old tets at the edge are better than the new ones.
   void split_edge_anyhow(Index a, Index b, double least, Change& change);
   /// Inserts a vertex inside a region. Removes a tet or all tets at one of its edges, then further tets
   /// beside them as long as that makes the worst new tet better, and fills the cavity from the vertex. Does

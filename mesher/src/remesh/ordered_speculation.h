@@ -33,7 +33,7 @@ class OrderedSpeculation {
   }
 
   /// Calls `propose(proposer, item, proposal)` and then `use(item, proposal)`, which may change the mesh, for
-  /// one item after the other, with the result of a single thread. Other threads propose ahead; a proposal
+  /// one item after the other. The result is that of a single thread. Other threads propose ahead; a proposal
   /// counts only if `is_up_to_date(item, proposal, begun)` finds that nothing it depends on has changed since
   /// the time `begun`. Ends and returns false as soon as `use` returns false; otherwise returns true.
   template <class Proposal>
@@ -55,9 +55,9 @@ class OrderedSpeculation {
   }
 
  private:
-  // The number of items for which changes are proposed at once is at most `most`, and at most one in
-  // `items_per_proposal` of all items, so that proposals rarely concern the same tets; but each thread gets
-  // several items.
+  // Returns the number of items for which changes are proposed at once: one in `items_per_proposal` of all
+  // items, so that proposals rarely concern the same tets, or several for each thread if that is more; at
+  // most `most`. A single thread proposes changes for one item at a time.
   static std::size_t proposals_at_once(std::size_t items) {
     constexpr std::size_t most = 256, items_per_proposal = 256, proposals_per_thread = 4;
     const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());

@@ -37,7 +37,8 @@ class Filling {
   }
 
  private:
-  // Puts a tet on a triangle of the front in every possible way. `worst` is the worst quality so far.
+  // Puts a tet on a triangle of the front in every possible way, and fills the rest each time. `worst`: worst
+  // quality of the tets so far.
   void go_on(double worst) {
     if (front_.empty()) {
       best_ = tets_;

@@ -72,7 +72,7 @@ class Replacing {
     return is_as_good_as(mendable * least_, insertion) && mended(std::move(insertion));
   }
 
-  // Returns the edges to split, longest first.
+  // Returns the edges between these corners that lie on no curve and no smooth patch, longest first.
   std::vector<std::array<Index, 2>> edges_to_split(const std::array<Index, 4>& corners) const {
     std::vector<std::array<Index, 2>> edges;
     for (const auto& [i, j] : cell_shapes::corner_pairs)

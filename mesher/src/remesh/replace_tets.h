@@ -19,8 +19,8 @@ struct UnwantedTet {
 /// Removes tets one after the other, so that all tets in their place reach the quality `least_quality` of the
 /// rule: inserts a vertex on an edge inside a region or on a planar patch, or removes an edge. Then repairs
 /// tets that are too poor, by more removals and by moving vertices inside regions; if that is not enough, the
-/// tet stays. Vertices keep their numbers; new ones follow. Returns the number of removed tets, including
-/// others that were removed with them. Precondition: the mesh has `features`.
+/// tet stays. Vertices keep their numbers; new ones follow. Returns how many of the unwanted tets are gone.
+/// Precondition: the mesh has `features`.
 std::size_t replace_tets(EditableMesh& edited, std::span<const UnwantedTet> unwanted, const ShapeRule& rule,
                          double least_quality);
 

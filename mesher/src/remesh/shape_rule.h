@@ -90,7 +90,7 @@ class ThinRule final : public AngleRule {
 /// tets may be thin, tets with an angle above the largest one of thin tets are worse than all others.
 class SliverRule final : public ShapeRule {
  public:
-  /// Keeps references to `thin` and `cells`. If `thin` is null, no tet may exceed the bound.
+  /// Keeps `thin` and `cells` by reference. If `thin` is null, no tet may exceed the radius-edge bound.
   explicit SliverRule(double radius_edge, const ThinShape* thin = nullptr, const CellBounds* cells = nullptr)
       : bound_(radius_edge), thin_(thin), cells_(cells) {}
 
@@ -106,8 +106,8 @@ class SliverRule final : public ShapeRule {
            (cells_ == nullptr || cells_->allow(p, corners));
   }
 
-  /// Returns whether the quality is above this value, which is positive. Much cheaper than the quality; may
-  /// return false for some tets above it.
+  /// Returns true only if the quality is above this value, which is positive. Much cheaper than the quality;
+  /// may return false for some tets above it.
   bool surely_exceeds(double quality, const Corners& p) const {
     if (forbids_thin_tets()) return false;
     const double of_obtuse = quality / obtuse_weight;

@@ -11,7 +11,7 @@ namespace collarmesh::remeshing {
 namespace {
 
 // A face whose normal has at least this cosine with its patch's normal agrees well enough, even if the old
-// face agreed better.
+// faces agree better.
 constexpr double enough_agreement = 0.8;
 
 double squared_distance_to(const Point& p, const SmoothSurfaces::Triangle& t) {
@@ -101,7 +101,7 @@ SmoothSurfaces::Nearest SmoothSurfaces::nearest(Index patch, const Point& p, dou
   return {nearest_point_on_triangle(p, t[0], t[1], t[2]), normal(t)};
 }
 
-// Returns a triangle of the patch that p is near to: the hint, if p is near it.
+// Returns a triangle of the patch within the tolerance of p (the hint, if it is such a triangle), or none.
 Index SmoothSurfaces::triangle_near(Index patch, const Point& p, Index hint) const {
   const Index first = plc_.patches[patch].first_triangle;
   return triangle_within_tolerance(
@@ -145,7 +145,7 @@ bool SmoothSurfaces::edges_near(std::span<const Index> old, std::span<const Face
   return true;
 }
 
-// Returns the largest squared distance of the centre and the middles of the edges from the patch.
+// Returns the largest squared distance of a triangle's centre and the middles of its edges from the patch.
 double SmoothSurfaces::squared_distance(Index patch, const Triangle& t) const {
   double largest = triangles(patch).squared_distance_to(centre(t), INFINITY);
   for (unsigned k = 0; k < 3; ++k)
@@ -180,8 +180,8 @@ bool SmoothSurfaces::samples_are_near(std::span<const Index> old, std::span<cons
 }
 
 // Returns whether the created faces are accepted beyond the tolerance. If the old faces are beyond it, the
-// created ones must be within the accepted ratio; otherwise they must agree with the patches and be no
-// farther from them than the old ones.
+// created ones may be farther from the patches than these by the accepted ratio. If not, the created ones
+// must agree with the patches and be no farther from them than the old ones.
 bool SmoothSurfaces::are_excused(std::span<const Index> old, std::span<const Face> created,
                                  bool agree) const {
   double farthest = 0;
@@ -226,8 +226,8 @@ bool SmoothSurfaces::fit(std::span<const Index> old, std::span<const Face> creat
 }
 
 // Returns whether the centres of the created faces are within the tolerance, and the faces agree with the
-// orientation of the patch at least as well as the old ones. `near`: by created face a triangle of the patch
-// near its centre.
+// orientation of the patch well enough, or at least as well as the old ones. Sets `near`: by created face a
+// triangle of the patch near its centre.
 bool SmoothSurfaces::centres_agree(std::span<const Index> old, std::span<const Face> created,
                                    double& agreement_of_old, std::vector<Index>& near) const {
   double least = 1;

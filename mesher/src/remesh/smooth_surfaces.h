@@ -57,9 +57,10 @@ class SmoothSurfaces {
     Triangle corners;
     Index patch;
   };
-  /// Returns whether the created faces can replace the mesh's faces `old`: the created ones must agree with
-  /// the orientation of the patch at least as well as the old ones. Faces on planar patches always fit.
-  /// Computes the agreement of the old faces if it is NaN, for callers that ask about the same faces again.
+  /// Returns whether the created faces can replace the mesh's faces `old`: they must stay within the
+  /// tolerance, and agree with the orientation of the patch well enough or at least as well as the old ones.
+  /// Faces on planar patches always fit. Computes the agreement of the old faces if it is NaN, for callers
+  /// that ask about the same faces again.
   bool fit(std::span<const Index> old, std::span<const Face> created, double& agreement_of_old) const;
   bool fit(std::span<const Index> old, std::span<const Face> created) const {
     double agreement_of_old = NAN;
@@ -68,7 +69,8 @@ class SmoothSurfaces {
   /// Takes the patches' sample points from these faces of the mesh. Call it before the faces are replaced or
   /// moved.
   void take_samples(std::span<const Index> faces);
-  /// Gives the sample points to faces that `fit`. Call it after the faces were replaced or moved.
+  /// Gives the sample points that were taken to the faces that replace the old ones or have moved.
+  /// Precondition: they `fit`.
   void give_samples(std::span<const Index> faces);
 
   /// Assigns all sample points to faces now instead of at the first query.

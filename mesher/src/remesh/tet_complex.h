@@ -40,8 +40,8 @@ class TetComplex {
     std::array<Index, 3> corners;
     Index like;  ///< a face of the mesh whose patch, regions and tag are copied
   };
-  /// Tets that replace others and fill the same cavity, or less of it at a boundary. Includes the changing
-  /// mesh faces inside the cavity or on its border.
+  /// Tets that replace others and fill the same cavity, or less of it at a boundary; and the mesh faces that
+  /// change, inside the cavity or on its border.
   struct Replacement {
     std::vector<Index> old;
     std::vector<NewTet> created;
@@ -74,8 +74,8 @@ class TetComplex {
 
   /// Returns whether the vertex is a corner of any tet.
   bool in_use(Index vertex) const { return vertex_tet_[vertex] != none; }
-  /// Returns whether the vertex is pinched: some of its tets share no face with the others, as where bodies
-  /// touch. Its star is then incomplete.
+  /// Returns whether the vertex is pinched: its tets are not all connected by faces, as where bodies touch.
+  /// Its star is then incomplete.
   bool pinched(Index vertex) const { return pinched_.contains(vertex); }
   /// Replaces `found` by the tets around a vertex that are connected by faces.
   void star(Index vertex, std::vector<Index>& found) const;

@@ -145,7 +145,7 @@ class ThinShape {
   static constexpr double largest_angle = largest_angle_of_thin_tets;
   static constexpr double rounding = 1e-6;  ///< degrees, a margin for other ways to compute an angle
 
-  /// `smallest_angle` is in degrees; 0: no tet is thin. Vertices have their current numbers. `reserve` is the
+  /// `smallest_angle` is in degrees; 0: no tet is thin. Vertices are numbered as in `mesh`. `reserve` is the
   /// share of the bounds, counted from 0 and from 180 degrees, that is kept in reserve. `forced`: see
   /// forced_edges_of. `tets_across`: see Bounds.
   ThinShape(const Plc& plc, const TetMesh& mesh, double smallest_angle, double reserve,
@@ -198,13 +198,13 @@ class ThinShape {
     const SquaredMargins margins = squared_margins(extreme_cosines(p), p, corners);
     return std::min(margins.of_smallest, margins.of_largest) >= good_enough;
   }
-  /// Returns true only if both margins are above this value, which is at least 1. Much cheaper than the
-  /// margins; may return false for some tets above it.
+  /// Returns true only if both squared margins are above the square of `margin`, which is at least 1. Much
+  /// cheaper than the margins; may return false for some tets with such margins.
   bool surely_exceeds(double margin, const Corners& p) const {
     const double smallest = margin * sine_, largest = margin * sine_of_largest_;
     return largest < 1 && surely_between(p, 1 - smallest * smallest, 1 - largest * largest);
   }
-  /// Returns whether the tet is thin only because the input forces an edge to be short.
+  /// Returns whether the tet keeps the bounds of thin tets, and a short forced edge lowers these bounds.
   bool is_thin_by_force(const Corners& p, const std::array<Index, 4>& corners) const {
     return !empty() && forced_ && forced_sine(p, corners) < sine_ && contains(p, corners);
   }
@@ -217,13 +217,13 @@ class ThinShape {
   }
 
  private:
-  // The sine of 1.7 degrees. Where forced edges permit smaller angles only, operations judge a tet by what
+  // The sine of 1.7 degrees. Where forced edges only permit angles below this, operations judge a tet by what
   // the edges permit. They judge all other tets as if no edge were forced, although forced edges may lower
   // the bounds of these tets, too.
   static constexpr double deep = 0.03;
   // Largest squared margin that forced edges can give a tet.
   static constexpr double good_enough = 2;
-  // Forced edges are looked up only for tets with a lower quality by angles.
+  // Forced edges are looked up only for tets whose quality by angles alone is below this.
   static constexpr double largest_forced_sine = 0.35;
 
   double smallest_sine_at(const std::array<Index, 4>& corners) const {

@@ -18,8 +18,8 @@ constexpr double first_step = 0.4;
 
 }  // namespace
 
-// Finds the tets and the mesh's faces at a vertex. Returns false at a collar, and if the tets are not
-// connected by faces.
+// Finds the tets and the mesh's faces at a vertex. Returns false if the vertex is fixed, if a tet or a face
+// at it has to stay, or if the tets are not connected by faces.
 bool Operations::find_cone_of_vertex(Index vertex) {
   cone_.clear();
   if (complex_.pinched(vertex) || edited_.is_fixed(vertex)) return false;
@@ -91,7 +91,7 @@ bool Operations::faces_are_of_one_patch() const {
          patches[cone_.faces[0]] == patches[cone_.faces[1]];
 }
 
-// Adds the edge of a face opposite a corner to the rim, oriented like the face.
+// Adds to the rim the edge of a face that is opposite a corner, oriented like the face.
 void Operations::add_to_rim(Index face, Index opposite) {
   const auto& v = mesh_.faces[face];
   const auto i = static_cast<unsigned>(std::ranges::find(v, opposite) - v.begin());
@@ -202,7 +202,7 @@ bool Operations::surfaces_allow(const Point& apex, Index id) {
   return surfaces_.fit(cone_.faces, faces_, cone_.agreement);
 }
 
-// Replaces the tets and faces by cones over the hull and the rim.
+// Makes the change replace the cone's tets and faces by those that join `apex` to the hull and the rim.
 void Operations::fill(Index apex, Change& change) const {
   auto& [old, created, old_faces, created_faces] = change.replacement;
   old = cone_.tets;
@@ -263,7 +263,8 @@ Point Operations::back_on_feature(const Point& p, const Point& from, const Freed
   return p - dot(p - patch.origin, patch.normal) * patch.normal;
 }
 
-// Searches for the best place by pattern search from `start`, whose quality is `best`.
+// Searches for the best place by pattern search from `start`, whose quality is `best`. Returns the place and
+// its quality.
 std::pair<Point, double> Operations::best_place(const Point& start, Index id, const Freedom& freedom,
                                                 double best) {
   const auto& points = mesh_.points;

@@ -104,8 +104,8 @@ class Cutter {
     }
   }
 
-  // Finds where the sides of s pierce t. Returns false if a corner of s lies in the plane of t or a side
-  // meets an edge of t, because other functions construct such points.
+  // Finds where the sides of s pierce t. Returns false if a corner of s that t lacks lies in the plane of t,
+  // or a side of s meets an edge of t: other functions construct such points.
   bool find_piercings(const facets::Corners& s, const facets::Corners& t, Index number,
                       std::vector<ExactPoint>& found) {
     const auto at = [&](Index p) -> const Point& { return draft_.points[p]; };
@@ -143,7 +143,8 @@ class Cutter {
     return at->second;
   }
 
-  // Adds the cuts of two triangles that cross in general position, with at most one common corner.
+  // Adds the cuts of two triangles if they cross in general position, with at most one common corner. Returns
+  // whether they do.
   bool add_crossing(const facets::Corners& s, Index i, const facets::Corners& t, Index j) {
     std::vector<ExactPoint> ends;
     std::size_t common = 0;
@@ -159,7 +160,8 @@ class Cutter {
     return true;
   }
 
-  // Adds the cuts of two triangles in one plane: each is cut by the sides of the other.
+  // Adds the cuts of two triangles if they lie in one plane: each is cut by the sides of the other. Returns
+  // false if they do not.
   bool add_coplanar(const facets::Corners& s, Index i, const facets::Corners& t, Index j) {
     const auto at = [&](Index p) -> const Point& { return draft_.points[p]; };
     for (const Index p : t)
@@ -220,7 +222,7 @@ class Cutter {
     on_edge_[edge_key(t[k], t[(k + 1) % 3])].push_back(common.back());
   }
 
-  // Computes a crossing once for both edges.
+  // Computes the crossing of two edges once for all triangles at them.
   ExactPoint crossing(const Edge& e, const Edge& f, unsigned axis) {
     const auto [at, added] = crossings_.try_emplace(e < f ? std::pair{e, f} : std::pair{f, e});
     if (!added) return at->second;

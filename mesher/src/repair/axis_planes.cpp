@@ -64,8 +64,8 @@ class AxisFlattener {
     return thin;
   }
 
-  // Moves facets onto one plane. Points that have moved before stay, so that none moves by more than the
-  // tolerance.
+  // Moves facets onto one plane. Points that have moved along this axis before stay, so that none moves by
+  // more than the tolerance along it.
   void move(std::span<const FlatFacet> facets, std::vector<bool>& stays) {
     const double plane = plane_of(facets);
     for (const FlatFacet& facet : facets)

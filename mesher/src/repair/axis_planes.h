@@ -17,9 +17,9 @@ struct FlattenReport {
 /// Moves facets that are perpendicular to a coordinate axis, and nearer to each other than `tolerance`
 /// (absolute) along it, onto one plane: the plane on which most of their area lies. Sheets that nearly
 /// coincide meet in ever more places when their cuts are rounded; rounding moves nothing off an axis plane,
-/// so sheets in such a plane are cut exactly. Facets count as perpendicular if they are flat within 1e-7 of
-/// the diagonal. Points that the input gives as vertices stay, and so do soups that are at most twice as
-/// thick as the tolerance. Cost: O(n log n).
+/// so sheets in such a plane are cut exactly. Facets count as perpendicular if they extend at most 1e-7 of
+/// the diagonal along the axis, and their normal is within 26 degrees of it. Points that the input gives as
+/// vertices stay, and so do soups that extend at most two tolerances along the axis. Cost: O(n log n).
 FlattenReport flatten_axis_planes(facets::ComplexDraft& draft, double tolerance);
 
 }  // namespace collarmesh::repairing

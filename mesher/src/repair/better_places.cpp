@@ -13,8 +13,8 @@ namespace {
 
 using namespace facets;
 
-// Returns for each place (connected changed triangles, see `Changes`) the sum of the costs of the troubles to
-// which it is the nearest place, within `reach`.
+// Returns for each place (connected changed triangles, see `Changes`) the sum of the costs of its troubles. A
+// trouble belongs to the place of the nearest changed triangle, if that is within `reach`.
 std::vector<double> costs(const ComplexDraft& draft, const std::vector<Index>& place_of, Index places,
                           const std::vector<Trouble>& troubles, double reach) {
   std::vector<double> cost(places, 0);

@@ -16,13 +16,13 @@ class Changes {
   Changes(const facets::ComplexDraft& before, const facets::ComplexDraft& after);
 
   Index places() const { return places_; }
-  /// Return the place of each triangle of the earlier or the later state; none for a triangle that both
-  /// states have.
+  /// Return, for each triangle of the earlier (`gone`) or the later (`come`) state, its place; none if both
+  /// states have the triangle.
   const std::vector<Index>& place_of_gone() const { return of_gone_; }
   const std::vector<Index>& place_of_come() const { return of_come_; }
 
   /// Returns the later state with the changes at some places undone. Sets `place` to the place of each
-  /// triangle; none for a triangle that both states have.
+  /// triangle of the result; none for a triangle that both states have.
   facets::ComplexDraft without(const std::vector<bool>& taken_back, std::vector<Index>& place) const;
 
  private:
@@ -41,7 +41,8 @@ class Changes {
 
 /// Returns the later state without the changes at the places in `taken_back` and at all other places whose
 /// facets would meet other facets outside of common edges and corners; adds these places to `taken_back`.
-/// Facets that meet in the earlier state may remain. Cost: O(n log n) for each of at most a few rounds.
+/// Facets that already meet in the earlier state may still meet. Cost: O(n log n) for each of at most a few
+/// rounds.
 facets::ComplexDraft without_what_meets(const Changes& changes, std::vector<bool>& taken_back);
 
 }  // namespace collarmesh::repairing

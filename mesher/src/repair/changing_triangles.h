@@ -37,7 +37,7 @@ class ChangingTriangles {
   Index add(const facets::Corners& corners, const facets::Origin& origin);
   void remove(Index triangle);
 
-  /// Calls visit(side) with the sides (3 t + i) that start at this point. The visitor must not change
+  /// Calls visit(3 t + i) for each triangle t whose side i starts at this point. The visitor must not change
   /// triangles.
   template <class Visit>
   void for_each_at(Index point, const Visit& visit) const {
@@ -50,12 +50,12 @@ class ChangingTriangles {
   /// Returns the sides on an edge, in order.
   std::vector<Index> sides(const Edge& edge) const;
 
-  /// Returns the unit normal of a triangle, or zero.
+  /// Returns the unit normal of a triangle, or zero if its corners are collinear.
   const Vector& normal(Index triangle) const { return normals_[triangle]; }
 
   /// Calls visit(s, t), s < t, once for each pair of near triangles of which at least one is `changed`; the
-  /// changed ones must exist and be in order. Cost: O(k log n + p) for k changed triangles and p pairs of
-  /// boxes; O(n log n + p) if k is a large share of n.
+  /// changed ones must exist and be sorted. Cost: O(k log n + p) for k changed triangles and p pairs of
+  /// boxes that meet; O(n log n + p) if k is a large share of n.
   template <class Visit>
   void for_each_near_pair(const std::vector<Index>& changed, const Visit& visit) {
     assert(std::ranges::is_sorted(changed) &&
@@ -91,8 +91,8 @@ class ChangingTriangles {
 
   /// Calls visit(p, edge) for each corner p and each edge that does not end at p, if their enlarged boxes
   /// meet and a changed triangle has the corner or the edge. Visits some pairs several times. Corners and
-  /// edges may no longer exist. Each pair costs a unit of `work`. Cost: as above, regardless of the number of
-  /// triangles at a corner.
+  /// edges may no longer exist. Each pair costs a unit of `work`. Cost: as for `for_each_near_pair`, however
+  /// many triangles are at a corner.
   template <class Visit>
   void for_each_corner_near_edge(const std::vector<Index>& changed, const Visit& visit) {
     const std::vector<Index> corners = corners_of(changed);
@@ -128,7 +128,7 @@ class ChangingTriangles {
       });
   }
 
-  /// Returns the draft without gaps: triangles keep their order, but get new numbers.
+  /// Returns the draft without removed triangles. The others keep their order, but get new numbers.
   facets::ComplexDraft compacted() const;
 
   /// For assertions and tests: returns whether the lists at these points contain sides of existing triangles
@@ -156,7 +156,7 @@ class ChangingTriangles {
   double reach_;
   Work& work_;
   const BoxFrame frame_;  // axes of the boxes
-  // Whether the first search near few changed triangles is over; only later searches keep trees.
+  // Whether there was a search near few changed triangles; only later ones build trees of all triangles.
   bool searched_triangles_ = false, searched_corners_ = false;
   std::size_t count_ = 0;
   std::vector<bool> alive_;

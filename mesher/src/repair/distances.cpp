@@ -28,7 +28,7 @@ bool before(const CornerPoints& s, const CornerPoints& t) {
   return false;
 }
 
-// Returns the triangles that the other surface does not have.
+// Returns the triangles that are not among `others`, whatever the order of their corners.
 std::vector<CornerPoints> without(std::span<const CornerPoints> triangles,
                                   std::span<const CornerPoints> others) {
   std::vector<CornerPoints> sorted;
@@ -46,8 +46,8 @@ unsigned steps(double length, double spacing) {
   return static_cast<unsigned>(std::clamp(std::ceil(length / spacing), 1.0, most));
 }
 
-// Visits a triangle's corners, its centroid, and points on lines along its longest side, no farther apart
-// than the spacing.
+// Visits a triangle's corners, its centroid, and points on lines parallel to its longest side. Lines and
+// points are no farther apart than the spacing.
 template <class Visit>
 void for_each_sample(const CornerPoints& t, double spacing, const Visit& visit) {
   unsigned first = 0;

@@ -37,7 +37,7 @@ std::vector<Index> cancelled_among(std::vector<DuplicateTriangle> duplicates, bo
 
 namespace {
 
-// Visits groups of triangles of one soup with the same corners.
+// Visits each group of two or more triangles of one soup that have the same corners.
 template <class Visit>
 void for_each_group(const ComplexDraft& draft, const Visit& visit) {
   struct Key {
@@ -63,7 +63,7 @@ void for_each_group(const ComplexDraft& draft, const Visit& visit) {
   }
 }
 
-// Removes triangles. Returns their number.
+// Removes the marked triangles. Returns their number.
 std::size_t drop(ComplexDraft& draft, const std::vector<bool>& removed) {
   std::size_t kept = 0;
   for (Index t = 0; t < draft.triangles.size(); ++t) {
@@ -100,7 +100,7 @@ std::size_t cancel_duplicates(ComplexDraft& draft) {
 }
 
 bool is_two_sided(const ComplexDraft& draft) {
-  constexpr double least = 1e-6;  // six volumes, relative to area^(3/2)
+  constexpr double least = 1e-6;  // six times the volume, relative to area^(3/2)
   const Point centre = draft.bounds.centre();
   double six = 0, area = 0;
   for (Index t = 0; t < draft.triangles.size(); ++t) {

@@ -27,15 +27,15 @@ bool is_odd(const facets::Corners& corners);
 /// orientation cancel; in a complex, where orientation has no meaning, all but one of the triangles cancel.
 std::vector<Index> cancelled_among(std::vector<DuplicateTriangle> duplicates, bool in_complex);
 
-/// Drops cancelled triangles and returns their number. Cost: O(n log n).
+/// Drops the triangles that cancel (see `cancelled_among`) and returns their number. Cost: O(n log n).
 std::size_t cancel_duplicates(facets::ComplexDraft& draft);
 
-/// Returns whether the oriented surface encloses no volume, like a surface that is double everywhere.
+/// Returns whether the oriented surface encloses almost no volume, like a surface that is double everywhere.
 bool is_two_sided(const facets::ComplexDraft& draft);
 
-/// Drops all copies but one of each triangle in those components that are closed surfaces afterwards, then
-/// orients all components consistently. A component is connected by corners. Returns the number of dropped
-/// triangles. Cost: O(n log n).
+/// Drops all copies but one of each triangle in those components that are closed surfaces afterwards. If any
+/// were dropped, orients all components consistently, and outwards if closed. A component is connected by
+/// corners. Returns the number of dropped triangles. Cost: O(n log n).
 std::size_t keep_one_side(facets::ComplexDraft& draft);
 
 }  // namespace collarmesh::repairing

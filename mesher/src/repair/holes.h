@@ -18,8 +18,8 @@ namespace collarmesh::repairing {
 std::vector<FilledHole> fill_holes(facets::ComplexDraft& draft, Tag first_tag, Work* work = nullptr,
                                    double largest_share = 0.6);
 
-/// Returns the number of edges that only one triangle of a soup has (more precisely: edges that the soup uses
-/// more often in one direction than in the other).
+/// Returns the number of open edges: the sum, over the edges of each soup that is no complex, of how much
+/// more often triangles use the edge in one direction than in the other.
 std::size_t count_open_edges(const facets::ComplexDraft& draft);
 
 }  // namespace collarmesh::repairing

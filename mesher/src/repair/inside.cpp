@@ -19,7 +19,7 @@ namespace {
 using namespace facets;
 
 constexpr std::size_t most_asked =
-    3;  // number of triangles of a shell, a patch or a component at which the winding number is computed
+    3;  // the winding number is computed at up to this many triangles of a shell, a patch or a component
 
 Point centroid(const ComplexDraft& draft, const Corners& t) {
   return (1.0 / 3) * (draft.points[t[0]] + draft.points[t[1]] + draft.points[t[2]]);
@@ -217,8 +217,8 @@ class BoundaryKeeper {
 
   // Removes open sheets: patches at edges where the soup is open. Such a patch bounds nothing if the winding
   // number at the patch, computed without the patch, is nearly an integer; at a boundary it would be the mean
-  // of the numbers inside and outside. Starts with the smallest patch: if a box has a wall inside, half of
-  // the box could be removed instead, because the wall closes the other half.
+  // of the numbers inside and outside. Starts with the smallest patch: in a box with a wall inside, a half of
+  // the box might be removed rather than the wall, because the wall closes the other half.
   void remove_open_sheets(Index soup, std::vector<int>& weights) {
     constexpr std::size_t most = 100;
     for (std::size_t count = 0; count < most; ++count) {
@@ -230,7 +230,7 @@ class BoundaryKeeper {
     }
   }
 
-  // Returns the patches whose removal reduces the length of the soup's open edges, small ones first.
+  // Returns the patches whose removal reduces the length of the soup's open edges, smallest areas first.
   std::vector<Index> open_patches(const std::vector<int>& weights) const {
     std::map<Index, double> gain;
     std::vector<std::pair<Index, int>> own;  // the soup's patches at the edge, and their weights
@@ -293,11 +293,11 @@ class BoundaryKeeper {
     });
   }
 
-  // A chamber (a component of space without the triangles) thinner than `thickness`.
+  // A part of space that triangles separate from the rest, thinner than `thickness`.
   struct ThinChamber {
     Point origin;
     double volume = 0, area = 0;
-    std::vector<std::pair<Index, double>> neighbours;  // shells on the other side, and the common area
+    std::vector<std::pair<Index, double>> neighbours;  // by triangle: the shell beyond it, and its area
   };
 
   std::map<Index, ThinChamber> thin_chambers() const {
@@ -407,7 +407,8 @@ class BoundaryKeeper {
   InsideReport report_;
 };
 
-// Components: triangles connected by edges that two triangles of one soup share.
+// Components: triangles connected by edges at which exactly two triangles of one soup meet, with consistent
+// orientation.
 struct Components {
   std::vector<Index> of;  // by triangle: the first triangle of its component
   std::map<Index, std::vector<Index>> triangles;

@@ -7,10 +7,10 @@
 
 namespace collarmesh::repairing {
 
-/// Returns whether the triangles enclose nothing, whatever their orientation. Precondition: they only meet in
-/// common edges and corners, or are copies of each other. Repeatedly removes triangles with an edge that no
-/// other triangle has. If no triangle is left, they enclose nothing, because closed surfaces have no such
-/// edge; the converse is not tested. Cost: O(n).
+/// Returns true only if the triangles enclose nothing, whatever their orientation. Repeatedly removes
+/// triangles with an edge that no other triangle has. Closed surfaces have no such edge, so if no triangle is
+/// left, they enclose nothing. May return false for triangles that enclose nothing. Precondition: they only
+/// meet in common edges and corners, or are copies of each other. Cost: O(n).
 bool peels_away(const facets::ComplexDraft& draft);
 
 /// The result of `turn_components`.
@@ -19,9 +19,10 @@ struct TurnReport {
   std::vector<Point> places;
 };
 
-/// Reverses closed components of surfaces whose orientation contradicts the rest: components that are
+/// Reverses closed components whose orientation contradicts the rest of their soup: components that are
 /// oriented inwards but lie inside nothing, and components inside a reversed one. A component is connected by
-/// edges that two triangles of one soup share. Cost: O(n log n).
+/// edges at which exactly two triangles of one soup meet with consistent orientation. Complexes stay. Cost:
+/// O(n log n).
 TurnReport turn_components(facets::ComplexDraft& draft);
 
 /// The result of `drop_flakes`.
@@ -30,19 +31,19 @@ struct FlakeReport {
   std::vector<Point> places;  ///< a place in each of them
 };
 
-/// Drops closed components thinner than `thickness` (absolute: twice the volume divided by the area) whose
-/// share of the total volume is tiny. Components are those of `turn_components`; components of complexes
-/// stay. Cost: O(n log n).
+/// Drops closed components thinner than `thickness` (absolute: twice the volume divided by the area) that
+/// have at most 1/1000 of the total volume. Components are those of `turn_components`; components of
+/// complexes stay. Drops nothing if nothing would be left. Cost: O(n log n).
 FlakeReport drop_flakes(facets::ComplexDraft& draft, double thickness);
 
 /// The result of `keep_boundaries`.
 struct InsideReport {
-  std::size_t removed_triangles = 0;  ///< triangles inside a solid, or that enclose nothing
+  std::size_t removed_triangles = 0;  ///< triangles with the same solid, or none, on both sides
   double removed_area = 0;
   std::size_t internal_facets = 0;  ///< triangles of open sheets inside a solid, which stay
   std::size_t dropped_sheets = 0;   ///< triangles of open sheets outside of all solids
   double dropped_area = 0;          ///< area of these sheets
-  std::vector<Point> places;        ///< in removed triangles
+  std::vector<Point> places;        ///< centroids of removed triangles
   std::vector<Point> dropped_places;
   double chamber_volume = 0;          ///< volume of thin chambers that became part of their neighbours
   std::vector<Point> chamber_places;  ///< a place in each of them
@@ -52,10 +53,10 @@ struct InsideReport {
 /// number of its surface is above 1/2 there; if it is inside several soups, the first one counts. Each soup
 /// then has the boundary of its part of space, oriented outwards; triangles between two soups have a copy for
 /// each. Components stay as they are if each of their edges has two triangles of one soup with consistent
-/// orientation; so do the facets of complexes. A chamber (a component of space without the triangles) thinner
-/// than `thickness` (absolute: twice its volume divided by its area) becomes part of the neighbour with the
-/// largest common area; many such chambers lie between sheets that nearly coincide. Precondition: triangles
-/// only meet in common edges and corners, or are copies of each other. Cost: O(n log n).
+/// orientation; so do the facets of complexes. A chamber is a part of space that triangles separate from the
+/// rest. A chamber thinner than `thickness` (absolute: twice its volume divided by its area), as between
+/// sheets that nearly coincide, becomes part of the neighbour with the largest common area. Precondition:
+/// triangles only meet in common edges and corners, or are copies of each other. Cost: O(n log n).
 InsideReport keep_boundaries(facets::ComplexDraft& draft, double thickness);
 
 }  // namespace collarmesh::repairing

@@ -16,16 +16,17 @@ std::vector<Box> boxes_of(const std::vector<Item>& items, const BoxOf& box_of) {
   return boxes;
 }
 
-/// Boxes of items that belong to numbered triangles: one tree of most items, and one of later items. The
-/// trees may contain items that no longer exist, and some items twice.
+/// Trees of the boxes of items (such as edges) that belong to numbered triangles: a large one, and one for
+/// items of triangles that were added later. They may contain items that no longer exist, and some items
+/// twice.
 template <class Item>
 class ItemTrees {
  public:
   bool empty() const { return !all_.tree; }
 
-  /// Puts the items of all triangles into the trees. `items_from(t)` returns the items of triangles from
-  /// number t on, `box_of(item)` an item's box; `end` is one more than the largest number, `count` the number
-  /// of triangles.
+  /// Updates the trees, so that they have the items of all triangles. `items_from(t)` returns the items of
+  /// triangles from number t on, `box_of(item)` an item's box; `end` is one more than the largest number,
+  /// `count` the number of triangles.
   template <class ItemsFrom, class BoxOf>
   void renew(Index end, std::size_t count, const ItemsFrom& items_from, const BoxOf& box_of) {
     if (empty() || few * (end - all_.end) > count) all_.build(items_from(0), box_of, end);
@@ -43,13 +44,13 @@ class ItemTrees {
   }
 
  private:
-  // A new large tree is built when more than one triangle in `few` was added later.
+  // A new large tree is built when more than one triangle in `few` has been added since the last one.
   static constexpr std::size_t few = 8;
 
   struct Tree {
     std::vector<Item> items;
     std::unique_ptr<BoxTree> tree;
-    Index end = 0;  // the large tree holds the items of triangles below this number
+    Index end = 0;  // the tree `all_` has the items of triangles below this number
 
     template <class BoxOf>
     void build(std::vector<Item> new_items, const BoxOf& box_of, Index new_end) {

@@ -9,14 +9,14 @@ namespace collarmesh::repairing {
 
 /// Returns a place where a valid complex has features below a tolerance (absolute), if there is one: curves
 /// shorter than the tolerance, features that come closer to each other than the tolerance without meeting,
-/// and patches that meet at so small an angle that they are nowhere farther apart. Cost: O(n log n + k) for k
-/// pairs of near neighbours.
+/// and patches that meet at so small an angle that they stay closer to each other than the tolerance. Cost:
+/// O(n log n + k) for k pairs of near neighbours.
 std::optional<Point> find_noise(const Plc& plc, double tolerance);
 
 /// A place that makes refinement expensive.
 struct Trouble {
   Point where;
-  double cost;  ///< relative to other costs
+  double cost;  ///< without a unit; to be compared with other costs
 };
 
 /// Returns features below a tolerance (absolute) and creases of less than a degree, which cost more the

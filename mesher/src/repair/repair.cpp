@@ -46,8 +46,8 @@ using namespace plc;
 using namespace repairing;
 
 constexpr std::size_t most_rounds = 6;
-// Gaps between borders are stitched even if they are wider than the tolerance, but not if they are wider than
-// this share of the diagonal: such gaps are taken as intended.
+// Gaps between borders that are wider than the tolerance are stitched, too, but only up to 100 tolerances and
+// up to this share of the diagonal: wider gaps are taken as intended.
 constexpr double widest_stitch = 1e-3;
 // If more than this share of the area is in open sheets, which are dropped, soups count as enclosing nothing.
 constexpr double most_in_open_sheets = 0.5;
@@ -60,7 +60,7 @@ void add_places(RepairPlaces& places, std::size_t count, double size, const std:
     if (places.where.size() < most_places) places.where.push_back(p);
 }
 
-// Returns the error of coordinates that were stored in 32 bits, absolute; 0 unless all were.
+// Returns the rounding error (absolute) of the coordinates if all of them are 32-bit floats, else 0.
 double single_precision_error(std::span<const PolygonSoup> soups) {
   double farthest = 0;
   for (const PolygonSoup& soup : soups)
@@ -100,7 +100,7 @@ class Repairer {
   }
 
   /// Collapses features smaller than `size` (absolute) in the soups. Precondition: `complex` was built from
-  /// these soups without faults. Distances are measured to `input`.
+  /// these soups without faults. `measure` then measures distances from `input`.
   RepairResult collapse_features(const RepairedPlc& complex, double size,
                                  std::span<const PolygonSoup> input) {
     try {
@@ -133,12 +133,12 @@ class Repairer {
 
   std::span<const PolygonSoup> input() const { return soups_; }
   double tolerance() const { return tolerance_; }  // the tolerance that is used, absolute
-  /// Returns whether all sheets are open and do not even meet, or most of the area is in open sheets.
+  /// Returns whether all sheets are open and none intersect, or most of the area is in open sheets.
   bool encloses_nothing() const { return encloses_nothing_; }
 
-  /// Measures how much of the input's volume is kept, for surfaces that are closed or nearly so. Measures
-  /// nothing if all parts of the input outside the result are near the result, because little volume can be
-  /// lost then.
+  /// Measures how much of the volume that the input encloses is lost, for surfaces that are closed or nearly
+  /// so. Measures nothing for complexes, and if all parts of the input outside the result are near the
+  /// result, because little volume can be lost then.
   KeptVolume kept_volume(const RepairReport& report) const {
     constexpr double far = 10;  // in tolerances
     const bool any_complex = std::ranges::any_of(draft_.soup_is_complex, [](bool b) { return b; });
@@ -223,7 +223,8 @@ class Repairer {
     orient_components(draft_, edges, one_sided);
   }
 
-  // Stitches borders that nearly meet; then fills open borders that are holes.
+  // Stitches borders that nearly meet; fills open borders that are holes; then drops flakes and turns
+  // inside-out components.
   void close() {
     std::size_t open = count_open_edges(draft_);
     for (const double factor : {1.0, 10.0, 100.0}) {
@@ -261,7 +262,7 @@ class Repairer {
     return tag + 1;
   }
 
-  /// The state of the draft. Once it is clean, steps must keep it clean.
+  /// The state of the draft. Once it is clean (without intersections), steps must keep it clean.
   struct State {
     ComplexDraft draft;
     RepairReport report;
@@ -288,7 +289,8 @@ class Repairer {
     keep_better_places(valid);
   }
 
-  // Moves facets that nearly coincide onto one plane. Reports moves larger than rounding.
+  // Moves facets perpendicular to an axis that nearly coincide onto one plane. Reports moves larger than
+  // rounding.
   void flatten() {
     const FlattenReport flattened = flatten_axis_planes(draft_, tolerance_);
     constexpr double rounding = 1e-6;  // in tolerances
@@ -296,7 +298,7 @@ class Repairer {
       add_places(report_.collapsed, flattened.moved_points, flattened.largest_distance, flattened.places);
   }
 
-  /// Tries a step. If it takes too much work, restores the state before it.
+  /// Tries a step. If it takes too much work, or nothing is enclosed afterwards, restores the state before.
   template <class Step>
   void try_on(const Step& step) {
     State clean = state();
@@ -309,9 +311,9 @@ class Repairer {
     restore(std::move(clean));
   }
 
-  // Snaps in rounds, because cutting undoes some of the snapping. Keeps the round that leaves the fewest
-  // places to snap. Stops when further rounds hardly help. If snapping spoils a clean draft, tries a smaller
-  // distance.
+  // Snaps in rounds, because cutting undoes some of the snapping. Keeps the state that leaves the fewest
+  // places to snap. Stops when further rounds hardly help. If cutting cannot make the draft clean after
+  // snapping, tries a smaller distance.
   void snap_in_rounds() {
     constexpr std::size_t most_worse = 2;
     constexpr double hardly_better = 0.95;
@@ -372,7 +374,8 @@ class Repairer {
   }
 
   // Cuts facets, some of which may nearly coincide. If rounding their cuts makes ever more intersections,
-  // first snaps the facets together, within the smallest distance that helps.
+  // keeps fewer merges of near corners; if that does not help, first snaps the facets together, within the
+  // smallest distance that helps. Returns whether the draft is clean.
   bool cut_what_nearly_coincides() {
     const ComplexDraft before = draft_;
     const RepairReport report_before = report_;
@@ -424,8 +427,8 @@ class Repairer {
     return true;
   }
 
-  // Returns the lost tags of facets. With `only_groups`, leaves out tags of CAD faces, which are numbers and
-  // not groups.
+  // Returns the tags of facets that no facet has after the repair. With `only_groups`, leaves out tags of CAD
+  // faces, which are numbers and not groups.
   std::vector<Tag> lost_tags(const std::vector<PolygonSoup>& repaired, bool only_groups) const {
     std::set<Tag> before, after;
     for (const PolygonSoup& soup : soups_)
@@ -452,7 +455,7 @@ class Repairer {
 };
 
 // Returns the options for one try of `build_repaired_plc`. If wrapping is the last resort, each earlier try
-// gets less work.
+// may take only a share of the permitted work.
 RepairOptions for_try(RepairOptions options, double factor) {
   constexpr std::size_t share_of_work = 4;
   options.tolerance *= factor;
@@ -460,7 +463,7 @@ RepairOptions for_try(RepairOptions options, double factor) {
   return options;
 }
 
-// Adds the tags of regions that the soups have, but the complex does not.
+// Adds to the report the tags of regions that the soups have, but the complex does not.
 RepairedPlc with_lost_regions(RepairedPlc complex, std::span<const PolygonSoup> soups) {
   std::set<Tag> given, there;
   for (const PolygonSoup& soup : soups) {
@@ -525,7 +528,7 @@ RepairedPlc judged(const Repairer& repairer, RepairResult result, const PlcOptio
   return with_lost_regions(std::move(complex), repairer.input());
 }
 
-/// Builds the complex of sheets that are cut where they intersect. Throws PlcError if they cannot be cut.
+/// Builds the complex of sheets that are cut where they intersect. Throws `fault` if they cannot be cut.
 RepairedPlc build_cut_sheets(std::span<const PolygonSoup> soups, const PlcOptions& options,
                              const RepairOptions& repair_options, const Execution& execution,
                              const PlcError& fault) {
@@ -539,7 +542,7 @@ RepairedPlc build_cut_sheets(std::span<const PolygonSoup> soups, const PlcOption
   return complex;
 }
 
-// Reports the regions of a valid complex that its repair removed.
+// Reports the regions of a valid complex that its repair removed or merged.
 void compare_regions(const Plc& before, RepairedPlc& repaired) {
   RepairReport& report = repaired.report;
   const plc::LostRegions lost = plc::lost_regions(before, repaired.plc, report.tolerance);
@@ -704,7 +707,7 @@ RepairedPlc build_repaired_plc(std::span<const PolygonSoup> soups, const PlcOpti
   std::optional<std::string> lost_volume;
   bool are_sheets = false;
   for (const double factor : {1.0, 10.0, 0.1}) {
-    if (factor < 1 && !lost_volume) break;  // a smaller tolerance may keep more
+    if (factor < 1 && !lost_volume) break;  // a smaller tolerance only helps to keep volume
     const RepairOptions other = for_try(repair_options, factor);
     Repairer repairer(soups, other, options, execution);
     RepairResult result = repairer.run();

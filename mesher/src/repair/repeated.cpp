@@ -15,7 +15,8 @@ namespace {
 
 using namespace facets;
 
-// Returns for each triangle whether it is a copy of an earlier one of its soup.
+// Returns for each triangle whether it is a copy of an earlier one of its soup: with the same corners and,
+// except in complexes, the same orientation.
 std::vector<bool> find_copies(const ComplexDraft& draft) {
   struct Key {
     Corners corners;
@@ -41,7 +42,8 @@ std::vector<bool> find_copies(const ComplexDraft& draft) {
   return copy;
 }
 
-// Groups of copies connected by edges. Finds for each group whether dropping it leaves the surface more open.
+// Groups of copies connected by edges. Tells for each group whether dropping it leaves as many open edges as
+// before, or more.
 class CopyGroups {
  public:
   CopyGroups(const ComplexDraft& draft, const std::vector<bool>& copy) : sets_(draft.triangles.size()) {

@@ -12,9 +12,9 @@ struct RepeatedReport {
   std::vector<Point> where;
 };
 
-/// Drops duplicate triangles. Keeps one of the triangles of a soup with the same corners and orientation,
-/// unless that opens the surface (two solids may share a facet); in complexes keeps one regardless of
-/// orientation. Cost: O(n log n).
+/// Drops duplicate triangles. If triangles of a soup have the same corners and orientation, drops all but one
+/// of them where that lowers the number of open edges, because two closed solids may share a facet. In
+/// complexes, drops all but one of the triangles with the same corners. Cost: O(n log n).
 RepeatedReport drop_repeated(facets::ComplexDraft& draft);
 
 }  // namespace collarmesh::repairing

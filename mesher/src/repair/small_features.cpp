@@ -84,8 +84,8 @@ class SmallOnes {
   bool is_kept(Index p) const { return kept_[p]; }
 
  private:
-  // Returns the mean width; infinity if a triangle is wider than `size_`, so that the patch is not narrow
-  // everywhere.
+  // Returns the mean width; infinity if a triangle is wider than `size_`, because the patch is not narrow
+  // there.
   double width_of(const Plc::Patch& patch) const {
     double area = 0, border = 0;
     for (Index t = patch.first_triangle; t < patch.first_triangle + patch.triangle_count; ++t) {
@@ -99,8 +99,8 @@ class SmallOnes {
     return border > 0 ? 2 * area / border : INFINITY;
   }
 
-  // Keeps features with a target edge length, curves with a name, and patches around regions thinner than the
-  // size.
+  // Keeps features with the kept tags of the options, curves with a name, and patches around regions thinner
+  // than the size.
   void find_kept(const RepairOptions& options) {
     const std::vector<bool> thin = thin_regions();
     for (Index p = 0; p < kept_.size(); ++p)
@@ -194,8 +194,8 @@ class FeatureCollapser {
     }
   }
 
-  // Marks the triangles of narrow patches by the numbers of their facets. Polygons may have been divided into
-  // other triangles for the complex; these belong to the patch that has all their corners.
+  // Marks the draft's triangles in narrow patches by their facet numbers. The complex may have divided a
+  // polygon into other triangles; a triangle that it lacks is in the narrow patch that has all its corners.
   void find_patches(const SmallOnes& small, const DraftPoints& points) {
     std::map<Corners, Index> patch_of;
     std::vector<std::set<Index>> narrow_at(draft_.points.size());
@@ -223,7 +223,7 @@ class FeatureCollapser {
     }
   }
 
-  // Ranks the points: of two points, the one of lower rank moves.
+  // Ranks the points: if two points merge, the one of lower rank moves.
   void rank_points(const SmallOnes& small, const DraftPoints& points) {
     constexpr int of_vertex = 1000;
     rank_.assign(draft_.points.size(), 0);
@@ -435,7 +435,7 @@ class FeatureCollapser {
   std::set<Edge> features_, short_;  // pieces of all curves; pieces of curves to be collapsed
   std::vector<int> rank_;            // by point, except added ones
   std::vector<CollapsedFeature> collapsed_;
-  std::set<Index> tips_;       // points of the tips among the narrow triangles
+  std::set<Index> tips_;       // apexes of the tips changed so far
   std::vector<Index> narrow_;  // existing triangles that are narrow or have a sharp corner, in order
   Index looked_at_ = 0;        // triangles before this one have been examined
   // The changes of this round:

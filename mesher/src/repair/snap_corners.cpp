@@ -71,8 +71,9 @@ void CornerSnapper::choose(const std::vector<NearEdge>& found) {
   }
 }
 
-// Returns whether cutting an edge makes progress, so that the process ends: either the new edges are shorter
-// than the edge, or it was not cut since the last overlay.
+// Returns whether cutting an edge makes progress, so that the process ends: either the edges from the corner
+// to the opposite corners are shorter than the edge, or this is its first cut without that since the last
+// overlay.
 bool CornerSnapper::may_cut(const NearEdge& near, std::span<const Index> sides) {
   const bool shorter = std::all_of(sides.begin(), sides.end(), [&](Index side) {
     const Index opposite = apex(state_.draft().triangles, side);
@@ -81,7 +82,7 @@ bool CornerSnapper::may_cut(const NearEdge& near, std::span<const Index> sides) 
   return shorter || cut_before_.insert(near.edge).second;
 }
 
-// Returns whether a corner is far enough from the other corners to be inserted into its edge.
+// Returns whether a corner is far enough along its edge from the other corners that the edge gets.
 bool CornerSnapper::has_room(const NearEdge& near) const {
   const std::vector<SnapCuts::OnEdge>* others = cuts_.on(near.edge);
   if (others == nullptr) return true;

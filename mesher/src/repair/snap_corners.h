@@ -21,10 +21,11 @@ class CornerSnapper {
   /// Keeps references to both arguments.
   CornerSnapper(SnapState& state, SnapCuts& cuts) : state_(state), cuts_(cuts) {}
 
-  /// Cuts edges of triangles not examined yet, unless that makes more than `most_triangles` triangles.
+  /// Cuts edges near corners, unless that makes more than `most_triangles` new triangles. Compares only pairs
+  /// of a corner and an edge of which one belongs to a triangle not examined yet.
   Outcome snap(std::size_t most_triangles);
 
-  /// Allows each edge to be cut once more, even if the pieces are not shorter than the edge.
+  /// Allows each edge to be cut once more even if the new edges are not shorter than it.
   void allow_cuts() { cut_before_.clear(); }
 
  private:

@@ -104,7 +104,7 @@ void SnapCuts::cut(Index t, const Corners& corners, const Origin& origin) {
   std::vector<Index> sorted = cuts.border;
   std::sort(sorted.begin(), sorted.end());
   const bool simple = std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end();
-  // If nothing is inside, cut from the opposite corner: a triangulation might make the old edge again.
+  // If only sides are cut, cut from opposite corners: a triangulation might make the old edge again.
   const bool plain = cuts.inside.empty() && along_.empty();
   if (simple && !plain) {
     const Vector normal = cross(at(corners[1]) - at(corners[0]), at(corners[2]) - at(corners[0]));
@@ -119,7 +119,7 @@ void SnapCuts::cut(Index t, const Corners& corners, const Origin& origin) {
   for (const Corners& piece : pieces) add_cut(piece, origin);
 }
 
-// Returns the pieces of other triangles' edges that run along a triangle, inside it.
+// Returns the pieces of other triangles' edges that lie in a triangle and not on one of its sides.
 std::vector<Edge> SnapCuts::constraints(Index t, const Corners& corners) const {
   std::vector<Edge> result;
   const auto found = along_.find(t);

@@ -23,13 +23,13 @@ class SnapCuts {
 
   void clear();
 
-  /// Adds a point to an edge; the point is at the distance `moved` from it.
+  /// Adds a point to the points that an edge gets. `moved`: its distance from the edge, for the report.
   void add(const Edge& edge, const OnEdge& point, double moved);
-  /// Adds a point to a triangle if it lies inside in the projection along the triangle's normal. Returns
-  /// whether the triangle has the point now.
+  /// Adds a point to the points that a triangle gets, and returns true, if it is within the limit of the
+  /// triangle's plane and its projection onto the plane is inside the triangle. Returns false if not.
   bool add_if_inside(Index triangle, Index point);
   /// Records that an edge of another triangle comes near this triangle: the edge's pieces there become edges
-  /// of this triangle, too.
+  /// between this triangle's pieces, too.
   void add_along(Index triangle, const Edge& edge) { along_[triangle].push_back(edge); }
 
   bool empty() const { return on_edge_.empty() && inside_.empty(); }
@@ -52,7 +52,7 @@ class SnapCuts {
       visit(t, std::as_const(edges));
     }
   }
-  /// Returns the number of triangles that cutting the edges would make.
+  /// Returns the number of triangles that cutting the edges would add.
   std::size_t pieces() const;
   /// Returns the points of an edge from a to b, both included.
   std::vector<Index> chain(Index a, Index b) const;

@@ -86,7 +86,8 @@ void Overlay::find_crossings(Index s, Index t) {
   }
 }
 
-// Adds a new point between two edges that pass each other closely, away from their ends.
+// Adds a new point between two edges that pass each other closely, away from their ends. Returns whether both
+// edges get a common point in this run.
 bool Overlay::consider_crossing(const Edge& e, const Edge& f) {
   if (e[0] == f[0] || e[0] == f[1] || e[1] == f[0] || e[1] == f[1]) return false;
   const Point &p = at(e[0]), &r = at(f[0]);
@@ -101,8 +102,8 @@ bool Overlay::consider_crossing(const Edge& e, const Edge& f) {
   if (d > state_.limit()) return false;
   for (const auto& [end, on] : {std::pair{e[0], on_f}, {e[1], on_f}, {f[0], on_e}, {f[1], on_e}})
     if (distance(at(end), on) <= state_.limit())
-      return false;  // this end is near the other edge, so it is
-                     // used instead
+      return false;  // this end is near the other edge, so
+                     // no new point is needed
   const auto key = e < f ? std::pair{e, f} : std::pair{f, e};
   if (crossing_.count(key) > 0) return true;
   if (!crossed_before_.insert(key).second) return false;

@@ -20,7 +20,7 @@ class PointMerger {
   PointMerger(SnapState& state, const std::vector<bool>& known);
 
   /// Merges points that are new, or whose triangles have changed, since the last call. Compares new points
-  /// with points compared before and with each other, in an order that does not depend on the input's.
+  /// with points compared before and with each other, in an order that does not depend on their numbers.
   /// Returns whether any points were merged.
   bool merge();
 
@@ -32,7 +32,7 @@ class PointMerger {
 
   SnapState& state_;
   std::vector<bool> pinned_;   // by point: whether it is loose or the end of a segment
-  std::vector<bool> in_grid_;  // by point: whether it is in the grid; points there are apart from each other
+  std::vector<bool> in_grid_;  // by point: whether it is in the grid; points there are not near each other
   PointGrid grid_;
 };
 

@@ -20,7 +20,7 @@ class SnapState {
   /// The parts that examine triangles, as bits.
   enum By : std::uint8_t { by_corners = 1, by_overlay = 2, by_both = 3 };
 
-  /// A change, for the report.
+  /// A change, for the report. `more`: a further point in an edge or a triangle that already gets one.
   struct Done {
     enum class What { merged, cut_edge, cut_triangle, more } what;
     Index point;
@@ -83,7 +83,7 @@ class SnapState {
   std::vector<Done> done_;
 };
 
-/// Cancels duplicates among the triangles added since the last call; others cannot have become duplicates.
+/// Cancels duplicates of the triangles added since the last call; others cannot have become duplicates.
 /// Returns the number of cancelled triangles.
 std::size_t cancel_new_duplicates(SnapState& state);
 

@@ -98,8 +98,8 @@ class Snapper {
     return std::move(report_);
   }
 
-  // Snaps corners until nothing is near or the rounds are over. Returns false if the number of triangles
-  // keeps growing.
+  // Snaps corners until nothing is near or the rounds are over. Returns false if there are more than
+  // `most_triangles_`.
   bool snap_all_corners(std::size_t rounds = most_rounds) {
     settled_ = false;
     for (std::size_t round = 0; round < rounds; ++round) {

@@ -113,7 +113,7 @@ class SoupMaker {
     }
   }
 
-  /// Returns the tags of points of soups without facets, which may consist of points alone.
+  /// Returns for each soup the tags of its vertices, if it has no facets; it may consist of points alone.
   std::vector<std::set<Tag>> tags_of_single_points() const {
     std::vector<std::set<Tag>> tags(soups_.size());
     for (Index s = 0; s < soups_.size(); ++s)

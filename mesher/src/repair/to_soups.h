@@ -8,8 +8,9 @@
 
 namespace collarmesh::repairing {
 
-/// Turns a draft back into soups, with all data of the old soups except facets. In soups with given features,
-/// a new edge (with a point from `first_new_point` on) at which facets end or meet sharply becomes a segment.
+/// Turns a draft back into soups. Points, facets, segments and vertices come from the draft, all other data
+/// from the old soups. In soups with given features, a new edge (with a point from `first_new_point` on) at
+/// which facets end or meet sharply becomes a segment.
 std::vector<PolygonSoup> to_soups(std::span<const PolygonSoup> soups, const facets::ComplexDraft& draft,
                                   Index first_new_point);
 

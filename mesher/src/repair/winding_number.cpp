@@ -7,8 +7,8 @@ namespace collarmesh::repairing {
 
 namespace {
 
-// The triangles of a node are taken together at points whose distance from the node exceeds this many of its
-// radii.
+// The triangles of a node are taken together at points whose distance from the node's centre exceeds this
+// many of its radii.
 constexpr double far = 3;
 
 // Returns the signed solid angle of a triangle (Van Oosterom and Strackee 1983), positive for points behind

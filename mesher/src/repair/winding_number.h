@@ -29,8 +29,8 @@ class WindingNumber {
   /// Cost: O(log n) unless the surface is crumpled around the point.
   double at(const Point& p, Index left_out = none) const;
 
-  /// Returns whether the point is so close to another triangle that rounding alone decides on which side it
-  /// lies.
+  /// Returns whether the point is so close to a triangle with another number than `left_out` that rounding
+  /// alone decides on which side it lies.
   bool is_on_another(const Point& p, Index left_out) const;
 
  private:

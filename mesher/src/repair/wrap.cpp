@@ -85,7 +85,7 @@ std::array<Point3, 7> samples(const Triangle3& t) {
           CGAL::centroid(t)};
 }
 
-// Returns the lost tags. A single tag for everything carries no information that could be lost.
+// Returns the tags of facets that wrapping loses: none if all facets have one tag, because it tells nothing.
 std::vector<Tag> lost_tags(std::span<const PolygonSoup> soups) {
   std::set<Tag> tags;
   for (const PolygonSoup& soup : soups)

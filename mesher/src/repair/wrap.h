@@ -9,16 +9,17 @@
 namespace collarmesh::repairing {
 
 /// Returns a closed surface around all facets of the soups, made of triangles with tag 1: orientable, without
-/// intersections. It lies outside of the facets at a distance of at least `offset`, mostly less than three
-/// times `offset`, and more where it spans a gap or a hole. It enters gaps and holes wider than about 2
-/// `alpha`. `alpha` and `offset` are absolute, input units; `alpha` should be 2 to 4 times `offset`. Without
-/// triangles to wrap the result has no facets. Throws PlcError for points that are not finite and indices out
-/// of range. Cost: O(n log n) for n triangles, and O(k log k) for a result of area k alpha^2. Portaneri,
-/// Rouxel-Labbe, Hemmer, Cohen-Steiner, Alliez 2022, by CGAL's Alpha_wrap_3.
+/// intersections. It lies outside of the facets: about `offset` away at its corners, mostly less than three
+/// times `offset` elsewhere, and more where it spans a gap or a hole. It enters gaps and holes wider than
+/// about 2 `alpha`. `alpha` and `offset` are absolute, input units; `alpha` should be 2 to 4 times `offset`.
+/// Without triangles to wrap the result has no facets. Throws PlcError for points that are not finite and
+/// indices out of range. Cost: O(n log n) for n triangles, and O(k log k) for a result of area k alpha^2.
+/// Portaneri, Rouxel-Labbe, Hemmer, Cohen-Steiner, Alliez 2022, by CGAL's Alpha_wrap_3.
 PolygonSoup wrap(std::span<const PolygonSoup> soups, double alpha, double offset);
 
 /// Returns the largest distance of a surface of triangles from the facets of the soups, absolute, measured at
-/// corners, midpoints of edges and centroids of triangles. Facets inside the surface do not count.
+/// corners, midpoints of edges and centroids of the surface's triangles. How far facets are from the surface
+/// does not count.
 double largest_distance_from(std::span<const PolygonSoup> soups, const PolygonSoup& surface);
 
 /// Builds the complex of the surface that `wrap` makes with the offset of the options. Returns nothing if

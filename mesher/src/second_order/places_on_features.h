@@ -29,8 +29,8 @@ class PlacesOnFeatures {
   bool is_flat(const TetMesh::VertexFeature& feature) const {
     return is_known(feature) && !is_smooth(feature);
   }
-  /// Returns whether a place belongs to an edge, by the distance from its middle and its length. If it does
-  /// not, it lies on another part of the feature, because a half circle has the ratio 0.5.
+  /// Returns whether a place at this distance from the middle of an edge of this length belongs to the edge.
+  /// A half circle has the ratio 0.5, so farther places lie on another part of the feature.
   static bool belongs(double distance, double length) { return distance <= 0.5 * length; }
   /// Returns whether nodes on this feature may have a place off their chords.
   bool has_places(const TetMesh::VertexFeature& feature) const {

@@ -26,8 +26,8 @@ namespace {
 
 using remeshing::UnwantedTet;
 
-// Two edges have the same tangent if the area between their tangents is smaller than this share of the area
-// between the edges.
+// Two edges count as having the same tangent if the area between their tangents is at most this share of the
+// area between the straight edges.
 constexpr double least_turn = 0.15;
 
 // Nodes move back by `step_factor`; below `least_share` of the full distance they go to the middle of their
@@ -179,7 +179,8 @@ class TetCurving {
       const Vector straight = mesh_.points[tet[k]] - mesh_.points[at];
       const Move* move = move_of(edge);
       const bool is_fixed = !untangling_.may_move(edge);
-      // Uses the tangent of the quadratic curve through the ends and a node this far off the middle.
+      // Uses the tangent, at the corner, of the quadratic curve through the ends and a node this far off the
+      // middle.
       sides[n++] = {tet[k], straight,
                     move != nullptr && move->share > 0 ? straight + 4 * move->way : straight, is_fixed};
       fixed += is_fixed ? 1 : 0;
@@ -300,7 +301,8 @@ class TetCurving {
 
   bool is_valid(const CurvedTet& nodes) const { return jacobian_exceeds(nodes, options_.least_jacobian); }
 
-  // If the curved edges of a tet are straight again, moves its nodes inside regions back for good.
+  // Moves the nodes of a tet that lie on no smooth feature back for good. Called if its other edges are
+  // straight.
   void put_back_inside(Index tet, std::vector<Index>& work) {
     for (const Index node : mesh_.tet_mid_nodes[tet]) {
       const Index edge = node - edges_.first_node();

@@ -119,8 +119,8 @@ std::size_t Untangling::untangle_within(Index tet, bool wide) {
   return 0;
 }
 
-// Collects the free nodes of the tet and of all tets that share an edge with it, and the tets at these
-// nodes.
+// Collects the free nodes of the tet and of all tets that share an edge with it (if `wide`, a corner), and
+// the tets at these nodes.
 void Untangling::gather(Index tet, bool wide) {
   std::vector<Index> near;
   if (wide)

@@ -63,9 +63,9 @@ class Untangling {
   std::vector<Free> free_;
   std::unordered_map<Index, Index> free_at_;        // index in free_, by node
   std::vector<Index> tets_;                         // all tets that have a free node
-  std::vector<std::array<Index, 6>> free_of_tets_;  // indices in free_, by the tets' nodes; none for fixed
+  std::vector<std::array<Index, 6>> free_of_tets_;  // by tet: indices of its nodes in free_; none for fixed
                                                     // nodes
-  std::vector<double> six_volumes_;                 // six times their volumes, taken as straight
+  std::vector<double> six_volumes_;                 // by tet: six times its volume with straight edges
 };
 
 }  // namespace collarmesh::second_order

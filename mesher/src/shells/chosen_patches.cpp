@@ -26,7 +26,7 @@ std::set<Tag> tags_of(const Plc& plc, const std::vector<std::string>& names) {
   return chosen;
 }
 
-/// The new numbers of the kept features, and their old numbers.
+/// The new numbers of features by old number, none if they are not kept, and the old numbers by new number.
 struct Renumbering {
   std::vector<Index> number, old;
 
@@ -36,7 +36,7 @@ struct Renumbering {
     number[i] = static_cast<Index>(old.size());
     old.push_back(i);
   }
-  /// Returns the kept entries of a list.
+  /// Returns the new numbers of the kept entries of a list, sorted.
   std::vector<Index> operator()(const std::vector<Index>& list) const {
     std::vector<Index> kept;
     for (const Index i : list)

@@ -12,10 +12,11 @@ namespace collarmesh::shells {
 /// A function from a point of the complex to the allowed distance between a curve there and its chord.
 using SagLimit = std::function<double(Index)>;
 
-/// Returns the distance between a curve and its chord from one parameter to another, relative to the limit.
+/// Returns the largest distance between a curve and its chord from one arc length to another, relative to the
+/// limit.
 double sag_between(const Plc& plc, const CurvePaths& paths, const SagLimit& limit, Index curve, double from,
                    double to);
-/// Returns the distance between a curve and its chord, relative to the tolerance.
+/// Returns the same distance relative to the tolerance.
 double sag_between(const Plc& plc, const CurvePaths& paths, const SurfaceTolerance& tolerance, Index curve,
                    double from, double to);
 

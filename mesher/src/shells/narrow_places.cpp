@@ -53,8 +53,8 @@ void NarrowPlaces::bound_widths() {
       widths_[e] = std::max(widths_[e], least(e, share));
 }
 
-/// Lowers sizes at the ends of edges that are at most four times as long as their distance from the features
-/// facing them.
+/// Lowers sizes at the ends of edges that are at most four times as long as the features facing them allow
+/// (`widths_`).
 void NarrowPlaces::lower_sizes() {
   constexpr double much_longer = 4;
   for (Index e = 0; e < complex_.edges.size(); ++e) {

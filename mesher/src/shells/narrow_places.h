@@ -16,8 +16,8 @@ struct NarrowTriangle {
   double width;  ///< distance of the third corner from the side
 };
 
-/// Calls visit(NarrowTriangle) for all triangles with all corners on curves. Leaves out triangles with two
-/// sides on curves, which lie in a corner.
+/// Calls visit(NarrowTriangle) for all triangles with all corners on curves and exactly one side on a curve.
+/// A triangle with two such sides lies in a corner.
 template <class Visit>
 void for_narrow_triangles(const SurfaceComplex& complex, const Visit& visit) {
   for (Index t = 0; t < complex.triangles.size(); ++t) {
@@ -52,7 +52,8 @@ class NarrowPlaces {
   NarrowPlaces(SurfaceComplex& complex, SurfaceEditor& editor, const SurfaceSizes& sizes,
                const Execution& execution);
 
-  /// Divides curves with at most this many new vertices. Returns whether good angles would need more edges.
+  /// Divides curves with at most this many new vertices. Returns whether it left edges longer than good
+  /// angles need, to limit their number.
   bool run(std::size_t most_vertices);
 
  private:

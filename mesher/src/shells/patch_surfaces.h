@@ -35,7 +35,8 @@ class PatchSurfaces {
     return p - dot(p - origin, normals_[patch]) * normals_[patch];
   }
 
-  /// Returns the cosine of the angle between the triangle and the patch; -1 for a flat triangle.
+  /// Returns the cosine of the angle between the normals of the triangle and of the patch; -1 for a triangle
+  /// without area.
   double agreement(const Corners& t, Index patch) const;
   /// The quality of a triangle's fit to a patch.
   struct Fit {

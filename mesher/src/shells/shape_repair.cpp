@@ -7,10 +7,10 @@ namespace collarmesh::shells {
 
 namespace {
 
-// Angles must exceed their bounds by this margin (degrees), so that they stay within the bounds when vertices
-// move onto exact geometry.
+// Shapes (see shape_of) must exceed their bounds by this margin, degrees, so that angles stay within their
+// bounds when vertices move onto exact geometry.
 constexpr double margin = 1.5;
-// Edges shorter than twice this, relative to the target edge length, are not divided.
+// Edges shorter than twice this share of the target edge length are not divided.
 constexpr double shortest = 0.015;
 // Vertices with more triangles, which a tessellation may have, are not moved or removed; their neighbours
 // are.
@@ -191,7 +191,8 @@ void ShapeRepair::improve(double wanted) {
   }
 }
 
-/// Divides an edge of a curve beside the triangle if a vertex at p would encroach upon it.
+/// Divides an edge of a curve beside the triangle if a vertex at p would encroach upon it. Returns whether it
+/// would, even if the edge cannot be divided.
 bool ShapeRepair::divide_curve_beside(Index triangle, const Point& p) {
   constexpr double least_cosine = -0.45;  // cosine of 117 degrees
   const std::array<Index, 3> c = complex_.triangles[triangle].corners;
@@ -292,7 +293,8 @@ bool ShapeRepair::refine(Index triangle) {
 std::size_t ShapeRepair::run(std::size_t most_vertices) {
   constexpr unsigned most_passes = 40, collapsing_passes = 3, first_passes = 12;
   const double wanted = least_angle + margin;
-  // The shape recorded for a refined triangle, above every wanted shape.
+  // The shape recorded for a triangle for which every attempt failed, refinement too. It is above every
+  // wanted shape, so `improve` does not try the triangle either until something around it changes.
   constexpr double refined = 180;
   std::size_t limit = complex_.vertices.size() + most_vertices, fewest = complex_.triangles.size();
   std::vector<Index> poor_ones;

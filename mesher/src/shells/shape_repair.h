@@ -12,7 +12,8 @@ namespace collarmesh::shells {
 /// The improvement of triangles whose angles are out of bounds: by flips, moves and collapses if that
 /// suffices; else by a vertex at the circumcentre or, if that lies beyond a curve, by dividing the curve's
 /// edge (J. Ruppert: A Delaunay refinement algorithm for quality 2-dimensional mesh generation, 1995). The
-/// vertex is closer to the shortest edge if that suffices (A. Ungor, Off-centers, 2004).
+/// vertex is nearer to the shortest edge than the circumcentre is, if that suffices (A. Ungor, Off-centers,
+/// 2004).
 class ShapeRepair {
  public:
   /// Keeps references to all arguments.

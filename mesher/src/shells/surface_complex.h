@@ -76,7 +76,7 @@ class SurfaceComplex {
 
   /// Returns the triangles that have both vertices.
   std::vector<Index> triangles_at(Index a, Index b) const;
-  /// Returns the triangles that have both vertices if there are exactly two of one patch.
+  /// Returns the triangles that have both vertices if there are exactly two.
   std::optional<std::array<Index, 2>> two_triangles_at(Index a, Index b) const;
   bool have_triangle(Index a, Index b) const;
   /// Returns the edge of a curve between the vertices, or none.

@@ -18,8 +18,8 @@ namespace collarmesh::shells {
 /// the tolerance of their patch and oriented like it, or at least fit as well as before.
 class SurfaceEditor {
  public:
-  /// Keeps references to all arguments. `most_excess`: share of the tolerance that triangles and edges may
-  /// use.
+  /// Keeps references to the first five arguments. `most_excess`: share of the tolerance that triangles and
+  /// edges may use.
   SurfaceEditor(SurfaceComplex& complex, const Plc& plc, const CurvePaths& paths,
                 const PatchSurfaces& surfaces, const SurfaceSizes& sizes, SurfaceTolerance tolerance,
                 double most_excess);
@@ -47,12 +47,13 @@ class SurfaceEditor {
     double least_shape = INFINITY;
   };
 
-  /// Replaces the edge ab inside a patch by the other diagonal, if the least shape increases.
+  /// Replaces the edge ab inside a patch by the other diagonal of its two triangles, if the least shape
+  /// increases.
   bool flip(Index a, Index b);
   /// Collapses the edge onto its vertex `to`. Returns false if that is not possible.
   bool collapse(Index from, Index to, const CollapseRule& rule);
-  /// Returns the triangles whose least shape is largest if a vertex is removed; nothing if that is not
-  /// possible.
+  /// Returns the triangles with the largest least shape that can take the place of a vertex and its
+  /// triangles; nothing if the vertex cannot be removed.
   std::optional<Filling> filling_without(Index vertex, const Removal& rule) const;
   /// Removes a vertex. `filling`: what filling_without returned for it; nothing has changed since then.
   void remove(Index vertex, const Filling& filling) { replace_vertex(vertex, filling.triangles); }

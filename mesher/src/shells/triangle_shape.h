@@ -48,7 +48,7 @@ inline Point circumcentre(const Corners& t) {
   return t[0] + cross(squared_norm(u) * v - squared_norm(v) * u, n) / scale;
 }
 
-/// Returns the coordinates of p's projection onto the plane of the triangle.
+/// Returns the barycentric coordinates of p's projection onto the plane of the triangle.
 inline std::array<double, 3> barycentric(const Corners& t, const Point& p) {
   const Vector n = cross(t[1] - t[0], t[2] - t[0]);
   const double all = squared_norm(n);

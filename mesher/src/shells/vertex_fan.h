@@ -30,7 +30,7 @@ class VertexFan {
     }
   }
 
-  /// Returns the mean of the triangles' normals; zero if they have none.
+  /// Returns the unit mean of the triangles' normals, weighted by areas; zero if there is none.
   const Vector& normal() const { return normal_; }
   /// Returns a unit vector orthogonal to the normal. Precondition: there is a normal.
   Vector across() const {

@@ -1,4 +1,4 @@
-// Samples a function of many places at once on nested grids.
+// Samples a function, which takes many places at once, on nested grids.
 #include "collarmesh/sampled_sizes.h"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr double coarsest = 1.0 / 64;  // size of cells, relative to the box's longest side
 constexpr unsigned finer_cells = 8;    // cells along each side of a cell that gets its own grid
-constexpr double finest = 1e-12;       // shortest cells that are divided, relative to the box's longest side
+constexpr double finest = 1e-12;       // cells this short are not divided; relative to the box's longest side
 
 using Counts = std::array<unsigned, 3>;
 
@@ -37,7 +37,7 @@ class Grid {
   }
   void set_sizes(std::vector<double> sizes) { sizes_ = std::move(sizes); }
 
-  /// A cell: its corners, and the position of a place in it, relative to its sides.
+  /// A cell: the indices of its lowest corner, and the position of a place in it, in lengths of its sides.
   struct Cell {
     Counts at;
     std::array<double, 3> shares;

@@ -74,7 +74,7 @@ struct SidePair {
   Index minus, plus;
 };
 
-/// Fills each pair with a prism of zero thickness.
+/// Adds a prism of zero thickness between the two triangles of each pair.
 void add_prisms(const TetMesh& mesh, const std::vector<SidePair>& pairs, Interfaces& interfaces) {
   for (const SidePair& pair : pairs) {
     const auto [a, b, c] = mesh.faces[pair.minus];

@@ -6,8 +6,8 @@
 
 namespace collarmesh {
 
-/// The pairs of features of a complex that have a point in common. The distance between features without a
-/// common point depends on the input alone, not on the mesh.
+/// The pairs of features of a complex that have a point in common. Edges between the features of other pairs
+/// cannot be shorter than the distance between the two features.
 class FeatureContacts {
  public:
   /// Keeps the complex by reference. Cost: near linear in the complex.

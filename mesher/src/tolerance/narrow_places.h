@@ -15,8 +15,9 @@ namespace collarmesh {
 /// crease, if their distance is below a share of the longest edge there.
 class NarrowPlaces {
  public:
-  /// Keeps a reference to the complex. `forced` must be made from this mesh. Features that meet below
-  /// `crease_angle` (degrees) form a crease.
+  /// Keeps a reference to the complex. `forced` must be made from this mesh. Features that meet at an angle
+  /// below `crease_angle` (degrees) form a crease. `share`: the largest distance in narrow places, relative
+  /// to the longest edge.
   NarrowPlaces(const Plc& plc, std::vector<TetMesh::VertexFeature> features, ForcedEdges forced,
                double crease_angle, double share);
 

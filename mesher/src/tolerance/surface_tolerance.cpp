@@ -26,7 +26,7 @@ namespace {
 // gaps in the same two cases (a hole and a slot). doc/architecture/tolerance.md has the measurements.
 constexpr double share_of_rod = 0.05, share_of_shell = 0.15, share_of_hole = 0.1, share_of_slot = 0.5;
 // Share of a region's volume that chords may remove or add, by the estimate below. Where chords would change
-// the volume by less, the shares of thickness grow by up to `largest_factor`.
+// the volume by less, the shares of thickness are multiplied by up to `largest_factor`.
 constexpr double share_of_volume = 0.015, largest_factor = 2;
 // If chords would remove at least the share `much_of_wedge` of the volume below a patch in a wedge, the
 // tolerance there is lowered so that they remove about `share_of_wedge`.
@@ -186,7 +186,7 @@ class LocalTolerance {
                     least_share * largest_);
   }
 
-  // Returns how the surface bends; positive where the material on this side is convex.
+  // Returns the sum of the principal curvatures, positive where the region on this side is convex.
   double bend(Index triangle, unsigned side) const {
     return side == 0 ? curvature_[triangle].sum : -curvature_[triangle].sum;
   }
@@ -236,7 +236,7 @@ class LocalTolerance {
     return losses;
   }
 
-  // Returns the factor on the shares of thickness with which these losses stay small relative to the volume.
+  // Returns the factor on the shares of thickness with which these losses stay within `share_of_volume`.
   double factor_by_volume(const std::vector<Loss>& losses, double volume) const {
     const auto lost = [&](double factor) {
       double sum = 0;
@@ -309,8 +309,8 @@ SurfaceTolerance::SurfaceTolerance(const Plc& plc, std::vector<double> triangles
 
 namespace {
 
-// Returns the largest distance of a smooth patch's triangles from its surface, relative to the distance that
-// `coarse_patches` allows.
+// Returns the largest distance of a smooth patch's triangles from its surface, as estimated from the angles
+// between them, relative to the distance that `coarse_patches` allows.
 double coarseness(const Plc& plc, const Plc::Patch& patch, const SurfaceTolerance& tolerance) {
   constexpr double share_of_triangles = 0.25;
   struct Side {

@@ -15,8 +15,8 @@ Vector unit(const Vector& v) {
   return length > 0 ? v / length : Vector{};
 }
 
-// Returns for each triangle the sum of the normals at its corners. The normal at a corner is the sum of the
-// normals of the patch's triangles there, weighted by area.
+// Returns for each triangle the mean direction of the normals at its corners; on planar patches, the patch's
+// normal. The normal at a corner is the sum of the normals of the patch's triangles there, weighted by area.
 std::vector<Vector> smooth_normals(const Plc& plc) {
   std::vector<Vector> normals(plc.triangles.size()), at_point(plc.points.size());
   for (const Plc::Patch& patch : plc.patches) {

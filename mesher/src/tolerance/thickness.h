@@ -27,7 +27,7 @@ class Thickness {
     double distance = INFINITY;
     Index triangle = none;  ///< triangle where the ray leaves the region; none if it meets none
     unsigned side = 0;      ///< side of that triangle on which the region lies
-    double facing = 0;      ///< cosine of the angle between the ray and that triangle's normal
+    double facing = 0;      ///< absolute cosine of the angle between the ray and that triangle's normal
   };
   struct Opposites {
     Opposite apart;         ///< nearest such triangle that is not at a slant, of a patch that does not

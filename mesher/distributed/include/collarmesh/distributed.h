@@ -22,11 +22,11 @@
 /// their cells and points.
 namespace collarmesh::distributed {
 
-/// The shape that the mesh approximates. Every rank must have it. References to it are kept.
+/// The shape that the mesh approximates. Every rank must have it. Keeps a reference to the complex.
 struct Shape {
   const Plc& plc;
-  ExactGeometry exact;  ///< without it, or where it returns no point, the polylines and triangles of the
-                        ///< complex are used
+  ExactGeometry exact;  ///< where this is empty or returns no point, the polylines and triangles of the
+                        ///< complex take its place
   double distance = 0;  ///< surface distance tolerance, absolute, input units
 };
 
@@ -34,7 +34,7 @@ struct Shape {
 struct AngleBounds {
   std::array<double, 2> least{180, 180}, most{0, 0};
 
-  /// Widens the bounds to those of a tet.
+  /// Widens the bounds so that they include the angles of a tet.
   void add(const TetQuality& tet, bool in_collar) {
     least[in_collar] = std::min(least[in_collar], tet.min_dihedral);
     most[in_collar] = std::max(most[in_collar], tet.max_dihedral);
@@ -45,9 +45,9 @@ struct AngleBounds {
 struct LevelReport {
   std::int64_t tets = 0;         ///< tets after the refinement
   std::int64_t on_features = 0;  ///< vertices with a place on a smooth or exact feature
-  std::int64_t spoilt = 0;       ///< tets that placing these vertices made invalid or poor
-  std::int64_t made_room = 0;    ///< moves that made room: of vertices inside regions, in planes and along
-                                 ///< straight curves
+  std::int64_t spoilt = 0;       ///< tets that were invalid or poor after these vertices were placed
+  std::int64_t made_room = 0;    ///< number of moves that made room, of vertices inside regions, in planes
+                                 ///< and along straight curves
   std::int64_t drawn_back = 0;   ///< vertices that did not reach their place
   double farthest_off = 0;       ///< largest distance of these vertices from their places, absolute
   double seconds = 0;            ///< time of the slowest rank
@@ -87,20 +87,21 @@ struct Certificate {
 ///
 /// The DMPlex has vertices, edges, faces and tets, without overlap, and the labels `region` (tets, the tag),
 /// `collar` (tets in collars: 1 star, 2 book), `patch` (faces, the tag) and `curve` (edges, the tag). The
-/// label `feature`, on vertices, edges and faces, is for this library: four times the index of the curve or
-/// patch of the complex plus its dimension; 0 for all vertices of the complex.
+/// label `feature`, on vertices, edges and faces, is for this library: its value is 4 i + d for the curve (d
+/// = 1) or patch (d = 2) of index i in the complex; 0 for all vertices of the complex.
 class ParallelMesh {
  public:
   /// Distributes a mesh that rank 0 has; others pass an empty one. Tags must fit PETSc's integers. PTScotch
-  /// partitions if PETSc has it. `collar_angle` is the bound that angles in collars have kept, degrees.
+  /// partitions if PETSc has it. `collar_angle` is the upper bound that dihedral angles in collars of this
+  /// mesh keep, degrees.
   ParallelMesh(MPI_Comm communicator, const TetMesh& mesh, const Plc& plc,
                double collar_angle = Bounds().collar_angle);
   ~ParallelMesh();
   ParallelMesh(const ParallelMesh&) = delete;
   ParallelMesh& operator=(const ParallelMesh&) = delete;
 
-  /// Cuts every tet into eight by Bey's rule; in the first refinement, along the inner diagonal that makes
-  /// the best angles. Moves the vertices on features onto the shape. If that spoils tets, vertices inside
+  /// Cuts every tet into eight by Bey's rule; the first refinement chooses the inner diagonal with the best
+  /// angles. Moves the vertices on features onto the shape. If that spoils tets, vertices inside
   /// regions and on planar or straight features move to make room; if that does not help, vertices on smooth
   /// or exact features move back. Precondition: first order.
   LevelReport refine(const Shape& shape);
@@ -110,7 +111,7 @@ class ParallelMesh {
   /// of order 2.
   OrderReport raise_order(const Shape& shape);
 
-  /// Recomputes every guarantee. Angles may be worse than those of the coarse mesh by `slack` degrees.
+  /// Checks every guarantee anew. Angles may exceed the extreme ones of the coarse mesh by `slack` degrees.
   Certificate certify(const Shape& shape, double slack = 10) const;
 
   /// Multiplies all coordinates by a factor.
@@ -126,8 +127,8 @@ class ParallelMesh {
   DM dm() const { return dm_; }
   MPI_Comm communicator() const { return communicator_; }
   int order() const { return order_; }
-  /// Returns the extreme angles of the coarse mesh when it was distributed; in collars, the given bound if
-  /// that is larger.
+  /// Returns the extreme dihedral angles that the coarse mesh had when it was distributed; the largest in
+  /// collars is `collar_angle` if that is larger.
   const AngleBounds& coarse_angles() const { return coarse_angles_; }
   /// Returns PETSc's name of the partitioner.
   const std::string& partitioner() const { return partitioner_; }

@@ -29,7 +29,7 @@ TetMesh read_tet_mesh(const std::string& path, std::string_view format = {});
 /// .xdmf (XDMF 3, with .h5 beside it), .med (SALOME) and, only written, .cgns.
 std::vector<std::string> written_tet_mesh_formats();
 std::vector<std::string> read_tet_mesh_formats();
-/// Returns the extensions of formats that can hold partitions, and ghost cells.
+/// Return the extensions of formats that can hold partitions, and of those that can hold ghost cells.
 std::vector<std::string> formats_with_partitions();
 std::vector<std::string> formats_with_ghost_cells();
 /// Returns the extensions of formats that have no elements of second order.

@@ -1,7 +1,7 @@
 // CGNS (cgns.github.io, "SIDS-to-HDF5 File Mapping Manual") in HDF5: one unstructured zone. Each region, each
-// tag of patches and each tag of curves is a group. It has a section of elements, with its name, for each
-// kind of its cells. Faces of a section that lie on the boundary also form a boundary condition, whose family
-// has the name of the group's first section.
+// tag of patches and each tag of curves is a group. A group has a section of elements, with the group's name,
+// for each kind of its cells. Faces of a section that lie on the boundary also form a boundary condition,
+// whose family has the name of the group's first section.
 #include <fmt/format.h>
 #include <hdf5.h>
 
@@ -37,7 +37,7 @@ constexpr PerKind<std::array<std::int32_t, 2>> cgns_types{{{{10, 11},   // tets
                                                             {7, 8},     // quadrangles
                                                             {3, 4}}}};  // edges
 
-/// Returns properties with which links keep their order.
+/// Returns properties for creating an object of this kind (a file or group) whose links keep their order.
 hid_t ordered(hid_t kind) {
   const hid_t properties = H5Pcreate(kind);
   H5Pset_link_creation_order(properties, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
@@ -62,7 +62,7 @@ class CgnsFile : public Hdf5File {
     write(path + "/ data", text.data(), {text.size()});
     return path;
   }
-  /// Adds values. `size` is in Fortran's order; empty: a list.
+  /// Adds a node with values. `size`: the extents of the array in Fortran's order; empty: a list.
   template <class Number>
   std::string add(const std::string& parent, const std::string& name, const char* label,
                   const std::vector<Number>& values, std::vector<hsize_t> size = {}) {

@@ -13,8 +13,8 @@ namespace collarmesh::io {
 
 constexpr const char* med_partition_field = "partition";  // whole numbers on the cells
 
-/// A type of elements, and our node at each place. MED's volumes have the opposite orientation. The places of
-/// second order begin with those of first order.
+/// A type of elements, and our node at each place. MED orients cells with volume the other way round. In
+/// second order the places of first order come first.
 struct MedType {
   CellKind kind;
   std::array<med_geometry_type, 2> types;  ///< by order

@@ -133,7 +133,7 @@ class MedReader {
     }
   }
 
-  /// Reads the partitions of our own files: the field `partition` of this mesh, a whole number for each tet.
+  /// Reads the partitions in our own files: the values of the mesh's field `partition` on tets.
   void read_partitions(med_geometry_type type) {
     const med_int fields = MEDnField(file_);
     for (int i = 1; i <= static_cast<int>(fields); ++i) {

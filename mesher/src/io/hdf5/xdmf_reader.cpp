@@ -96,7 +96,7 @@ class Grid {
     for (auto& [name, values] : piece.cell_data) values.resize(before + count);
   }
 
-  /// Takes the names in our files and in meshio's.
+  /// Gives the mesh the names of groups that our files and meshio's contain.
   void take_names(TetMesh& mesh) const {
     pugi::xml_document names;
     if (!names.load_string(grid_.child("Information").text().as_string())) return;
@@ -185,7 +185,7 @@ TetMesh read_xdmf(const std::string& path) {
     std::error_code ignored;
     if (!fs::exists(beside, ignored)) continue;
     const Grid grid(beside.string());
-    if (grid.coordinates() == coordinates) grid.append(piece);  // otherwise it belongs to another mesh
+    if (grid.coordinates() == coordinates) grid.append(piece);  // other points: a grid of another mesh
   }
   TetMesh mesh;
   try {

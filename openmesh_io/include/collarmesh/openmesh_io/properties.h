@@ -12,8 +12,8 @@
 
 namespace collarmesh::openmesh_io {
 
-// Names of the properties that `boundary_surface` writes, and that are read by default. Tags are
-// std::int64_t.
+// Names of properties. `boundary_surface` writes all but `vertex_tag`; `Surfaces::add` reads the three tags
+// by default. Tags are std::int64_t.
 inline constexpr const char* patch_tag = "collarmesh:patch_tag";      ///< face property
 inline constexpr const char* curve_tag = "collarmesh:curve_tag";      ///< edge property
 inline constexpr const char* vertex_tag = "collarmesh:vertex_tag";    ///< vertex property
@@ -30,8 +30,8 @@ namespace detail {
 template <class Mesh, template <class> class Handle>
 class TagProperty {
  public:
-  /// Finds the property. An empty name stands for no property; an `optional` one may be missing. Throws
-  /// OptionError.
+  /// Finds the property. An empty name stands for no property. Throws OptionError if the property is missing,
+  /// unless its name is `optional`.
   TagProperty(const Mesh& mesh, const std::string& name, std::string_view optional) : mesh_(mesh) {
     if (name.empty()) return;
     const bool found =

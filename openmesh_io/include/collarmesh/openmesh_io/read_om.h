@@ -6,10 +6,10 @@
 
 namespace collarmesh::openmesh_io {
 
-/// Reads a mesh in OpenMesh's own format (.om), in double precision if it was saved so. Leaves out faces
-/// marked as deleted and custom properties. Throws ReadError (path, byte) for a file that is missing,
-/// malformed or truncated, whose counts are too large for its size, whose indices are out of range, or whose
-/// coordinates are not finite.
+/// Reads a mesh in OpenMesh's own format (.om), in double precision if it was saved so. Leaves out custom
+/// properties, and faces that are marked as deleted. Throws ReadError (path, byte) for a file that is
+/// missing, malformed or truncated, whose counts are too large for its size, whose indices are out of range,
+/// or whose coordinates are not finite.
 PolygonSoup read_om(const std::string& path);
 
 }  // namespace collarmesh::openmesh_io

@@ -16,16 +16,15 @@
 namespace collarmesh::openmesh_io {
 
 /// Options for reading an OpenMesh mesh. Properties are of type int, unsigned, std::int64_t or std::uint64_t
-/// and have the names given here. A missing property throws OptionError, unless it is one of the defaults,
-/// which `boundary_surface` writes.
+/// and have the names given here. A missing property throws OptionError, unless its name is the default.
 struct SurfaceOptions {
   std::string name = {};           ///< name in messages
-  std::optional<Tag> region = {};  ///< tag of the regions that this surface bounds; none: their number
+  std::optional<Tag> region = {};  ///< tag of the regions inside this surface; none: their numbers
   /// Face property: faces with the same value form a separate surface, and the value becomes the tag of its
   /// regions; empty: one surface.
   std::string region_property = {};
   std::string patch_property = patch_tag;  ///< face property: tag of the patch
-  /// Edge property: a value other than 0 makes a curve with that tag.
+  /// Edge property: an edge with a value other than 0 is on a curve with this tag.
   std::string curve_property = curve_tag;
   /// Vertex property: where it is not 0, the vertex becomes a feature with this tag.
   std::string vertex_property = vertex_tag;

@@ -10,7 +10,8 @@ namespace collarmesh::brep {
 
 enum class CadFormat { brep, step, iges, other };
 
-/// Returns the format of a file by its extension (any case), or as `format` says.
+/// Returns the format that an extension (any case) stands for: `format`, such as ".step", or the path's
+/// extension if `format` is empty.
 inline CadFormat cad_format_of(const std::string& path, std::string_view format = {}) {
   std::string extension =
       format.empty() ? std::filesystem::path(path).extension().string() : std::string(format);
@@ -26,7 +27,7 @@ inline bool is_cad_format(const std::string& path, std::string_view format = {})
   return cad_format_of(path, format) != CadFormat::other;
 }
 
-/// Returns the extensions.
+/// Returns the extensions of CAD files, in lower case.
 inline std::vector<std::string> cad_formats() { return {".brep", ".brp", ".step", ".stp", ".iges", ".igs"}; }
 
 }  // namespace collarmesh::brep

@@ -30,12 +30,12 @@ struct CadOptions {
   Overlap overlap = Overlap::first;
 };
 
-/// Bounds on the distance and angle between triangles and faces.
+/// Bounds on how far chords and triangles may deviate from the exact edges and faces.
 struct TessellationOptions {
   double deflection = 0;  ///< largest distance from curved edges and faces, absolute; 0: 1e-4 of the diagonal
   double angle = 20;      ///< degrees; largest turn between neighbouring chords and triangles
   std::vector<Tag> finer_faces{};  ///< numbers of faces that get finer triangles
-  double finer = 1;                ///< factor by which these are finer; it applies to both bounds
+  double finer = 1;                ///< on these faces both bounds are divided by this
 };
 
 /// A length, area or volume of the exact shape and of its tessellation.
@@ -55,14 +55,14 @@ struct CadMeasures {
 /// to no face. Its sub-shapes are numbered from 1 in the order of TopExp::MapShapes; a face's tag is its
 /// number. Solids that touch are changed so that they share faces there. Pieces of faces and edges that are
 /// cut for this keep the number of the original; new edges get the next free numbers. The common part of
-/// several solids is given to one of them. Edges that belong to no face are split where they meet faces or
-/// one another. Pieces that lie outside the solids, on faces, or too near to faces or to one another are left
-/// out; notes list these. A shape of faces alone is sewn and becomes a solid if it is closed; the same
-/// happens to the faces of an open solid. Failures of OpenCASCADE are listed in `notes`, and the builder of
-/// the complex must handle them: solids that cannot be fused may intersect, solids that stay open have holes,
-/// and a face that cannot be triangulated may have points along its edges that its neighbours lack, or may be
-/// missing. The functions are virtual, so that a program without OpenCASCADE can use a model that the module
-/// has made (module.cpp).
+/// several solids is given to one of them, or to a new region (`CadOptions::overlap`). Edges that belong to
+/// no face are split where they meet faces or one another. Pieces that lie outside the solids, on faces, or
+/// too near to faces or to one another are left out; notes list these. A shape of faces alone is sewn and
+/// becomes a solid if it is closed; the same happens to the faces of an open solid. Failures of OpenCASCADE
+/// are listed in `notes`, and the builder of the complex must handle them: solids that cannot be fused may
+/// intersect, solids that stay open have holes, and a face that cannot be triangulated together with its
+/// neighbours may have points along its edges that its neighbours lack, or may be missing. The functions are
+/// virtual, so that a program without OpenCASCADE can use a model that the module has made (module.cpp).
 class CadModel {
  public:
   /// Makes a model. `labels` are those of the shape's sub-shapes. Throws PlcError for a shape without solids,
@@ -74,14 +74,14 @@ class CadModel {
   CadModel& operator=(CadModel&&) noexcept;
 
   virtual const std::string& name() const;
-  virtual double diagonal() const;  ///< Returns the diagonal of its bounding box.
+  virtual double diagonal() const;  ///< Returns the diagonal of the shape's bounding box.
   virtual const CadLabels& labels() const;
 
-  /// Triangulates all faces. Returns one soup for each solid, one for the faces that belong to no solid, and
-  /// one of chords and points for the edges and vertices inside solids that belong to no face. The number of
-  /// soups does not depend on the options. Neighbouring faces share the points of their edges. Vertices,
-  /// edges and faces of the shape are features with their numbers as tags; seams and degenerate edges are no
-  /// features. Throws PlcError if OpenCASCADE fails, or no face can be triangulated.
+  /// Triangulates all faces. Returns one soup for each solid, then, if there are any, one for the faces that
+  /// belong to no solid, and one of chords and points for the edges and vertices inside solids that belong to
+  /// no face. The number of soups does not depend on the options. Neighbouring faces share the points of
+  /// their edges. Vertices, edges and faces of the shape are features with their numbers as tags; seams and
+  /// degenerate edges are no features. Throws PlcError if OpenCASCADE fails, or no face can be triangulated.
   virtual std::vector<PolygonSoup> tessellate(const TessellationOptions& options);
 
   /// Returns the changes to the shape (sewn faces, overlaps, mended faces, ...), as sentences.
@@ -102,20 +102,24 @@ class CadModel {
   /// Returns the point of EdgeN (dimension 1), or of the surface of FaceN (dimension 2), that is nearest to
   /// `p`. The point `p` must not be much farther from the edge or face than the tessellation is. Returns
   /// nothing if there is no such sub-shape or OpenCASCADE finds no point. Precondition: tessellated. Cost:
-  /// constant for simple surfaces, logarithmic in the face's triangles for others.
+  /// constant for planes, lines and other elementary shapes; else linear in the edge's chords, or logarithmic
+  /// in the face's triangles.
   virtual std::optional<Point> nearest(unsigned dimension, Tag number, const Point& p) const;
 
-  /// Returns the faces nearest to a place, as "Face3 and Face7". Precondition: tessellated.
+  /// Returns the two faces whose triangles have the corners nearest to a place, as "Face3 and Face7".
+  /// Precondition: tessellated.
   virtual std::string faces_near(const Point& where) const;
 
-  /// Returns the distance from a place to the nearest point of the triangles. Precondition: tessellated.
+  /// Returns the distance from a place to the nearest corner of the triangles. Precondition: tessellated.
   virtual double distance_to(const Point& where) const;
 
   /// Returns lengths, areas and volumes, by integrals over the exact edges and faces; seams have none.
   /// Precondition: tessellated. Cost: a small part of reading the shape.
   virtual CadMeasures measures() const;
 
-  /// Returns the sub-shapes that OpenCASCADE's own check finds invalid, with places; empty if there are none.
+  /// Returns text on the first few sub-shapes that OpenCASCADE's own check finds invalid, with places; empty
+  /// if there are none or the check fails. Names only those of the lowest dimension, because shapes that
+  /// contain them are invalid, too.
   virtual std::string invalid_parts() const;
 
   struct Parts;
@@ -125,9 +129,9 @@ class CadModel {
   std::unique_ptr<Parts> parts_;
 };
 
-/// Reads a file by its extension (any case) or as `format` says: .brep .brp (OpenCASCADE), .step .stp, .iges
-/// .igs; the units of STEP and IGES become millimetres. Throws ReadError, and PlcError as the constructor
-/// does.
+/// Reads a file. Its format is `format` or, if that is empty, the path's extension (any case): .brep .brp
+/// (OpenCASCADE), .step .stp, .iges .igs; the units of STEP and IGES become millimetres. Throws ReadError,
+/// and PlcError as the constructor does.
 CadModel read_cad(const std::string& path, std::string_view format = {}, const CadOptions& options = {});
 
 }  // namespace collarmesh::brep
