@@ -6,6 +6,7 @@
 #include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepBuilderAPI_MakeWire.hxx>
 #include <BRepBuilderAPI_Transform.hxx>
+#include <BRepGProp.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCone.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
@@ -14,8 +15,10 @@
 #include <BRepPrimAPI_MakeSphere.hxx>
 #include <BRepPrimAPI_MakeTorus.hxx>
 #include <BRepTools.hxx>
+#include <GProp_GProps.hxx>
 #include <GeomAPI_Interpolate.hxx>
 #include <TColgp_HArray1OfPnt.hxx>
+#include <TopExp_Explorer.hxx>
 #include <TopoDS_Edge.hxx>
 #include <TopoDS_Face.hxx>
 #include <gp_Ax1.hxx>
@@ -27,6 +30,7 @@
 #include <map>
 #include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "collarmesh/brep/cad_model.h"
@@ -121,6 +125,48 @@ TEST(CadMeasures, OfACapThatNoParameterLinesBound) {
   ASSERT_EQ(areas.size(), 2U);
   EXPECT_NEAR(areas[0], 21 * pi, 1e-7 * 21 * pi);
   EXPECT_NEAR(areas[1], 30 * pi, 1e-9 * 30 * pi);
+}
+
+/// The areas of all faces and the volume by OpenCASCADE's integrals over faces.
+std::pair<std::vector<double>, double> integrated(const TopoDS_Shape& shape) {
+  constexpr double error = 1e-9;  // OpenCASCADE's estimate
+  std::vector<double> areas;
+  for (TopExp_Explorer faces(shape, TopAbs_FACE); faces.More(); faces.Next()) {
+    GProp_GProps properties;
+    BRepGProp::SurfaceProperties(faces.Current(), properties, error);
+    areas.push_back(properties.Mass());
+  }
+  std::sort(areas.begin(), areas.end());
+  GProp_GProps properties;
+  BRepGProp::VolumeProperties(shape, properties, error);
+  return {areas, properties.Mass()};
+}
+
+TEST(CadMeasures, OfCutPrimitivesAreThoseOfOpenCascade) {
+  const gp_Ax2 tilted(gp_Pnt(0.5, 0.3, 1), gp_Dir(1, 2, 3));
+  const TopoDS_Shape rod =
+      BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(-4, -8, -11), gp_Dir(1, 2, 3)), 0.8, 30).Shape();
+  const TopoDS_Shape tip = BRepPrimAPI_MakeCone(gp_Ax2(gp_Pnt(1, 0, -9), gp::DZ()), 2, 0, 20).Shape();
+  gp_Trsf mirrored;
+  mirrored.SetMirror(gp_Ax2(gp_Pnt(3, 1, 0), gp_Dir(1, 1, 2)));
+  for (const TopoDS_Shape& whole :
+       {BRepPrimAPI_MakeCone(tilted, 5, 2, 7).Shape(), BRepPrimAPI_MakeSphere(tilted, 5).Shape(),
+        BRepPrimAPI_MakeTorus(tilted, 5, 2).Shape(), BRepPrimAPI_MakeTorus(tilted, 5, 2, 1.5).Shape(),
+        BRepPrimAPI_MakeCylinder(tilted, 4, 6).Shape()})
+    for (const TopoDS_Shape& tool : {rod, tip}) {
+      const TopoDS_Shape cut = BRepAlgoAPI_Cut(whole, tool).Shape();
+      for (const TopoDS_Shape& shape : {cut, BRepBuilderAPI_Transform(cut, mirrored, true).Shape()}) {
+        const auto [areas, volume] = integrated(shape);
+        brep::CadModel model(shape, "part");
+        model.tessellate({.deflection = 0.05});
+        const brep::CadMeasures measures = model.measures();
+        const std::vector<double> found = exact(measures.areas);
+        ASSERT_EQ(found.size(), areas.size());
+        for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], areas[i], 1e-6 * areas.back());
+        ASSERT_EQ(measures.volumes.size(), 1U);
+        EXPECT_NEAR(measures.volumes[0].value().exact, volume, 1e-6 * volume);
+      }
+    }
 }
 
 /// Makes a spline through points of a plane curve, for t from 0 to 1.

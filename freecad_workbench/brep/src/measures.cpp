@@ -1,8 +1,6 @@
 #include "measures.h"
 
 #include <BRepAdaptor_Curve.hxx>
-#include <BRepAdaptor_Surface.hxx>
-#include <BRepBuilderAPI_NurbsConvert.hxx>
 #include <BRepGProp.hxx>
 #include <BRepGProp_Domain.hxx>
 #include <BRepGProp_Face.hxx>
@@ -16,12 +14,13 @@
 #include <TopTools_ShapeMapHasher.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Face.hxx>
-#include <gp_Pln.hxx>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
+
+#include "contour_integrals.h"
 
 namespace collarmesh::brep {
 
@@ -69,12 +68,6 @@ double volume_of_triangles(const PolygonSoup& soup) {
   return volume;
 }
 
-struct FaceMeasure {
-  double area = 0;
-  double cone = 0;  // signed volume of the cone over the face: positive if its normal points away from the
-                    // apex
-};
-
 /// Areas of faces and volumes of the cones over them, with an apex inside the shape. Each face is integrated
 /// once.
 class FaceIntegrals {
@@ -94,31 +87,15 @@ class FaceIntegrals {
 
  private:
   FaceMeasure measure(const TopoDS_Shape& face) const {
-    const BRepAdaptor_Surface surface(TopoDS::Face(face), false);
-    if (surface.GetType() == GeomAbs_Plane) {
-      const double area = integrated<BRepGProp_Sinert>(face);
-      const gp_Ax3 axes = surface.Plane().Position();
-      const gp_Vec normal(axes.XDirection().Crossed(axes.YDirection()));
-      return {area, area * normal.Dot(gp_Vec(apex_, axes.Location())) / 3};
-    }
+    if (const auto measured = integrate_along_edges(TopoDS::Face(face), apex_)) return *measured;
     return {integrated<BRepGProp_Sinert>(face), integrated<BRepGProp_Vinert>(face)};
-  }
-
-  /// Returns the face as a spline surface if it is an extruded or revolved spline curve. OpenCASCADE does not
-  /// know the spans of such surfaces, and adaptive integrals then miss waves.
-  static TopoDS_Face with_known_spans(const TopoDS_Face& face) {
-    const BRepAdaptor_Surface surface(face, false);
-    const bool is_swept =
-        surface.GetType() == GeomAbs_SurfaceOfExtrusion || surface.GetType() == GeomAbs_SurfaceOfRevolution;
-    if (!is_swept || surface.BasisCurve()->GetType() != GeomAbs_BSplineCurve) return face;
-    return TopoDS::Face(BRepBuilderAPI_NurbsConvert(face, true).Shape());
   }
 
   /// Integrates over a face as it lies in space, whatever its orientation. Adaptive integrals are much more
   /// exact than fixed ones, which have too few points for splines of many spans.
   template <class Integral>
   double integrated(const TopoDS_Shape& shape) const {
-    const TopoDS_Face face = with_known_spans(TopoDS::Face(shape.Oriented(TopAbs_FORWARD)));
+    const TopoDS_Face face = TopoDS::Face(shape.Oriented(TopAbs_FORWARD));
     BRepGProp_Face surface(face);
     BRepGProp_Domain domain(face);
     const int spans = surface.SUIntSubs() * surface.SVIntSubs();

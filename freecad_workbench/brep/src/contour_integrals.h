@@ -1,0 +1,23 @@
+#pragma once
+
+#include <TopoDS_Face.hxx>
+#include <gp_Pnt.hxx>
+
+#include <optional>
+
+namespace collarmesh::brep {
+
+struct FaceMeasure {
+  double area = 0;
+  double cone = 0;  ///< signed volume of the cone over the face: positive if its normal points away from the
+                    ///< apex
+};
+
+/// Measures a face by Green's theorem: the integrals over the face become integrals along its edges in the
+/// parameters of its surface. For planes, cylinders, cones, spheres and tori the first of the two integrals
+/// is known; for other surfaces it is computed span by span. The face's own orientation does not count: its
+/// normals are those of its surface. Returns nothing for a face without edges or with edges that have no
+/// curve on the surface.
+std::optional<FaceMeasure> integrate_along_edges(const TopoDS_Face& face, const gp_Pnt& apex);
+
+}  // namespace collarmesh::brep
