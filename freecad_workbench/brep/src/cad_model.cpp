@@ -123,8 +123,10 @@ double CadModel::distance_to(const Point& where) const {
 }
 
 CadMeasures CadModel::measures() const {
-  return on_shape(parts_->name, "integrating over faces",
-                  [&] { return measure(parts_->topology, parts_->tessellation, parts_->deflection); });
+  return on_shape(parts_->name, "integrating over faces", [&] {
+    if (!parts_->integrals) parts_->integrals = std::make_unique<FaceIntegrals>(parts_->topology.all);
+    return measure(parts_->topology, *parts_->integrals, parts_->tessellation, parts_->deflection);
+  });
 }
 
 std::string CadModel::invalid_parts() const {

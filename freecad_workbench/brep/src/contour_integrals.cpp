@@ -41,34 +41,48 @@ bool is_below(const FaceMeasure& a, const FaceMeasure& limit) {
   return std::fabs(a.area) <= limit.area && std::fabs(a.cone) <= limit.cone;
 }
 
-/// Integrates from a to b by the rule of Gauss and Kronrod with 7 and 15 points. Halves the interval while
-/// the two rules differ by more than the tolerance, at most `halvings` times.
-template <class Function>
-FaceMeasure integrate(const Function& f, double a, double b, const FaceMeasure& tolerance,
-                      unsigned halvings = 8) {
-  constexpr std::array<double, 8> at{0.991455371120812639206854697526329, 0.949107912342758524526189684047851,
-                                     0.864864423359769072789712788640926, 0.741531185599394439863864773280788,
-                                     0.586087235467691130294144838258730, 0.405845151377397166906606412076961,
-                                     0.207784955007898467600689403773245, 0};
-  constexpr std::array<double, 8> kronrod{
-      0.022935322010529224963732008058970, 0.063092092629978553290700663189204,
-      0.104790010322250183839876322541518, 0.140653259715525918745189590510238,
-      0.169004726639267902826583426598550, 0.190350578064785409913256402421014,
-      0.204432940075298892414161999234649, 0.209482141084727828012999174891714};
-  constexpr std::array<double, 4> gauss{
-      0.129484966168869693270611432679082, 0.279705391489276667901467771423780,
-      0.381830050505118944950369775488975, 0.417959183673469387755102040816327};
+/// A rule of Kronrod and the rule of Gauss whose points it contains, in -1 to 1 (Piessens et al., QUADPACK,
+/// 1983). Points on the right side, the middle last; every second point is of Gauss.
+template <std::size_t N>
+struct Rule {
+  std::array<double, N> at, kronrod;
+  std::array<double, N / 2> gauss;
+};
+
+constexpr Rule<4> of_7_points{{0.960491268708020283423507092629080, 0.774596669241483377035853079956480,
+                               0.434243749346802558002071502844628, 0},
+                              {0.104656226026467265193823857192073, 0.268488089868333440728569280666710,
+                               0.401397414775962222905051818618432, 0.450916538658474142345110087045571},
+                              {0.555555555555555555555555555555556, 0.888888888888888888888888888888889}};
+
+constexpr Rule<8> of_15_points{{0.991455371120812639206854697526329, 0.949107912342758524526189684047851,
+                                0.864864423359769072789712788640926, 0.741531185599394439863864773280788,
+                                0.586087235467691130294144838258730, 0.405845151377397166906606412076961,
+                                0.207784955007898467600689403773245, 0},
+                               {0.022935322010529224963732008058970, 0.063092092629978553290700663189204,
+                                0.104790010322250183839876322541518, 0.140653259715525918745189590510238,
+                                0.169004726639267902826583426598550, 0.190350578064785409913256402421014,
+                                0.204432940075298892414161999234649, 0.209482141084727828012999174891714},
+                               {0.129484966168869693270611432679082, 0.279705391489276667901467771423780,
+                                0.381830050505118944950369775488975, 0.417959183673469387755102040816327}};
+
+/// Integrates from a to b. Halves the interval while the rules of Gauss and Kronrod differ by more than the
+/// tolerance, at most `halvings` times. The result is far more exact than the tolerance.
+template <std::size_t N, class Function>
+FaceMeasure integrate(const Rule<N>& rule, const Function& f, double a, double b,
+                      const FaceMeasure& tolerance, unsigned halvings = 8) {
   const double middle = (a + b) / 2, half = (b - a) / 2;
   const FaceMeasure centre = f(middle);
-  FaceMeasure fine = kronrod[7] * centre, coarse = gauss[3] * centre;
-  for (unsigned i = 0; i < 7; ++i) {
-    const FaceMeasure both = f(middle - half * at[i]) + f(middle + half * at[i]);
-    fine = fine + kronrod[i] * both;
-    if (i % 2 == 1) coarse = coarse + gauss[i / 2] * both;
+  FaceMeasure fine = rule.kronrod.back() * centre, coarse = rule.gauss.back() * centre;
+  for (std::size_t i = 0; i + 1 < N; ++i) {
+    const FaceMeasure both = f(middle - half * rule.at[i]) + f(middle + half * rule.at[i]);
+    fine = fine + rule.kronrod[i] * both;
+    if (i % 2 == 1) coarse = coarse + rule.gauss[i / 2] * both;
   }
   if (halvings == 0 || is_below(half * (fine - coarse), tolerance)) return half * fine;
   const FaceMeasure each = 0.5 * tolerance;
-  return integrate(f, a, middle, each, halvings - 1) + integrate(f, middle, b, each, halvings - 1);
+  return integrate(rule, f, a, middle, each, halvings - 1) +
+         integrate(rule, f, middle, b, each, halvings - 1);
 }
 
 /// The place of the apex in the axes of a surface.
@@ -187,9 +201,9 @@ class Contour {
   }
 
  private:
-  static constexpr double precision = 1e-6;  // relative to the face; the finer rule is far more exact
 
   void set_tolerance() {
+    const double precision = known_ ? 1e-8 : 1e-5;  // relative to the face
     FaceMeasure largest{};
     constexpr int samples = 4;
     for (int i = 0; i <= samples; ++i)
@@ -222,10 +236,10 @@ class Contour {
     for (const double end : inner_is_v_ ? v_spans_ : u_spans_) {
       const double until = std::min(end, to);
       if (until <= from) continue;
-      sum = sum + integrate(f, from, until, inner_tolerance_);
+      sum = sum + integrate(of_7_points, f, from, until, inner_tolerance_);
       from = until;
     }
-    if (from != to) sum = sum + integrate(f, from, to, inner_tolerance_);
+    if (from != to) sum = sum + integrate(of_7_points, f, from, to, inner_tolerance_);
     return sum;
   }
 
@@ -243,7 +257,8 @@ class Contour {
     };
     FaceMeasure sum;
     for (std::size_t i = 0; i + 1 < ends.size(); ++i)
-      sum = sum + integrate(f, ends[i], ends[i + 1], outer_tolerance_);
+      sum = sum + (known_ ? integrate(of_15_points, f, ends[i], ends[i + 1], outer_tolerance_)
+                          : integrate(of_7_points, f, ends[i], ends[i + 1], outer_tolerance_));
     return sum;
   }
 

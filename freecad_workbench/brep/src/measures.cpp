@@ -2,50 +2,34 @@
 
 #include <BRepAdaptor_Curve.hxx>
 #include <BRepGProp.hxx>
-#include <BRepGProp_Domain.hxx>
-#include <BRepGProp_Face.hxx>
-#include <BRepGProp_Sinert.hxx>
-#include <BRepGProp_Vinert.hxx>
 #include <GProp_GProps.hxx>
-#include <NCollection_IndexedDataMap.hxx>
 #include <Standard_Failure.hxx>
 #include <TopExp.hxx>
 #include <TopTools_IndexedMapOfShape.hxx>
-#include <TopTools_ShapeMapHasher.hxx>
 #include <TopoDS.hxx>
-#include <TopoDS_Face.hxx>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 
-#include "contour_integrals.h"
-
 namespace collarmesh::brep {
 
 namespace {
 
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-
-/// Runs an integral of OpenCASCADE. Returns `otherwise` if it fails, as it does on some shapes.
-template <class Integral, class Value>
-Value integrate_or(const Value& otherwise, const Integral& integral) {
-  try {
-    return integral();
-  } catch (const Standard_Failure&) {
-    return otherwise;
-  }
-}
-
+/// Returns NaN if OpenCASCADE fails, as it does on some edges.
 double length_of(const TopoDS_Shape& edge) {
-  const BRepAdaptor_Curve curve(TopoDS::Edge(edge));
-  const double from = curve.FirstParameter(), to = curve.LastParameter();
-  if (curve.GetType() == GeomAbs_Line) return to - from;
-  if (curve.GetType() == GeomAbs_Circle) return (to - from) * curve.Circle().Radius();
-  GProp_GProps properties;
-  BRepGProp::LinearProperties(edge, properties);
-  return properties.Mass();
+  try {
+    const BRepAdaptor_Curve curve(TopoDS::Edge(edge));
+    const double from = curve.FirstParameter(), to = curve.LastParameter();
+    if (curve.GetType() == GeomAbs_Line) return to - from;
+    if (curve.GetType() == GeomAbs_Circle) return (to - from) * curve.Circle().Radius();
+    GProp_GProps properties;
+    BRepGProp::LinearProperties(edge, properties);
+    return properties.Mass();
+  } catch (const Standard_Failure&) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
 }
 
 double area_of_triangles(const PolygonSoup& soup) {
@@ -67,54 +51,6 @@ double volume_of_triangles(const PolygonSoup& soup) {
   }
   return volume;
 }
-
-/// Areas of faces and volumes of the cones over them, with an apex inside the shape. Each face is integrated
-/// once.
-class FaceIntegrals {
- public:
-  explicit FaceIntegrals(const TopoDS_Shape& shape) {
-    const Point centre = place_of(shape);
-    apex_ = gp_Pnt(centre.x, centre.y, centre.z);
-    for (const TopoDS_Shape& face : subshapes(shape, TopAbs_FACE))
-      measures_.Add(face, integrate_or(FaceMeasure{unknown, unknown}, [&] { return measure(face); }));
-  }
-
-  double area(const TopoDS_Shape& face) const { return measures_.FindFromKey(face).area; }
-  double cone(const TopoDS_Shape& face) const {
-    const double cone = measures_.FindFromKey(face).cone;
-    return face.Orientation() == TopAbs_REVERSED ? -cone : cone;
-  }
-
- private:
-  FaceMeasure measure(const TopoDS_Shape& face) const {
-    if (const auto measured = integrate_along_edges(TopoDS::Face(face), apex_)) return *measured;
-    return {integrated<BRepGProp_Sinert>(face), integrated<BRepGProp_Vinert>(face)};
-  }
-
-  /// Integrates over a face as it lies in space, whatever its orientation. Adaptive integrals are much more
-  /// exact than fixed ones, which have too few points for splines of many spans.
-  template <class Integral>
-  double integrated(const TopoDS_Shape& shape) const {
-    const TopoDS_Face face = TopoDS::Face(shape.Oriented(TopAbs_FORWARD));
-    BRepGProp_Face surface(face);
-    BRepGProp_Domain domain(face);
-    const int spans = surface.SUIntSubs() * surface.SVIntSubs();
-    constexpr int few = 8, many = 10'000;             // with many spans adaptive integrals would take long
-    const double error = spans <= few ? 1e-3 : 1e-5;  // OpenCASCADE's estimate; on waves it is too low
-    Integral integral;
-    integral.SetLocation(apex_);
-    if (face.NbChildren() == 0)
-      integral.Perform(surface, error);
-    else if (spans > many)
-      integral.Perform(surface, domain);
-    else
-      integral.Perform(surface, domain, error);
-    return integral.Mass();
-  }
-
-  gp_Pnt apex_;
-  NCollection_IndexedDataMap<TopoDS_Shape, FaceMeasure, TopTools_ShapeMapHasher> measures_;
-};
 
 /// A sum over the parts of a sub-shape, and the possible error of the tessellation.
 struct Sum {
@@ -149,8 +85,7 @@ std::map<Tag, CadMeasure> lengths_of(const Topology& topology, const Tessellatio
     TopExp::MapShapes(part.shape, TopAbs_EDGE, edges);
   for (int e = 1; e <= edges.Extent(); ++e)
     if (const TopoDS_Shape& edge = edges(e); tessellation.lengths.IsBound(edge))
-      sums[topology.number(edge)].add(integrate_or(unknown, [&] { return length_of(edge); }),
-                                      tessellation.lengths.Find(edge), 2 * deflection);
+      sums[topology.number(edge)].add(length_of(edge), tessellation.lengths.Find(edge), 2 * deflection);
   return plausible(sums);
 }
 
@@ -186,8 +121,8 @@ std::vector<std::optional<CadMeasure>> volumes_of(const Topology& topology, cons
 
 }  // namespace
 
-CadMeasures measure(const Topology& topology, const Tessellation& tessellation, double deflection) {
-  const FaceIntegrals integrals(topology.all);
+CadMeasures measure(const Topology& topology, const FaceIntegrals& integrals,
+                    const Tessellation& tessellation, double deflection) {
   return {lengths_of(topology, tessellation, deflection),
           areas_of(topology, tessellation, integrals, deflection),
           volumes_of(topology, tessellation, integrals, deflection)};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "collarmesh/brep/cad_model.h"
+#include "face_integrals.h"
 #include "nearest.h"
 #include "tessellation.h"
 #include "topology.h"
@@ -13,8 +14,9 @@ struct CadModel::Parts {
   double diagonal = 0;
   Topology topology;
   Tessellation tessellation;
-  double deflection = 0;                  ///< deflection of this tessellation
-  std::unique_ptr<NearestOnShape> exact;  ///< nearest points, by means of this tessellation
+  double deflection = 0;                     ///< deflection of this tessellation
+  std::unique_ptr<FaceIntegrals> integrals;  ///< made when measures are asked for
+  std::unique_ptr<NearestOnShape> exact;     ///< nearest points, by means of this tessellation
 };
 
 }  // namespace collarmesh::brep

@@ -28,7 +28,7 @@ struct MeshJob {
   void trace(std::string_view stage, const TetMesh& mesh);
 
   const PipelineOptions given;
-  Start start;  ///< what this mesh is made from
+  Start start;  ///< how this mesh begins
   PipelineResult made;
   RunControl control;
   VertexBudget budget;

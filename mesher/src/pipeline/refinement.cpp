@@ -86,8 +86,11 @@ class VertexCounter {
   }
 
   void count_up_to(double enough) {
-    if (!shape_) shape_.emplace(*job_.plc);
-    const double tets = prediction::count_tets(*shape_, job_.options.mesh, {}, enough);
+    if (!shape_) {
+      shape_.emplace(*job_.plc);
+      tets_.emplace(*shape_, job_.options.mesh);
+    }
+    const double tets = tets_->count_up_to(enough);
     most_ = static_cast<double>(few) + tets;
     is_known_ = tets < enough;
   }
@@ -108,6 +111,7 @@ class VertexCounter {
   Fineness fineness_;
   bool exceeded_ = false;
   std::optional<prediction::Shape> shape_;
+  std::optional<prediction::TetCounter> tets_;
   double most_ = 0;  // the number that the sizes ask for, or less if it is not known yet
   bool is_known_ = false;
   std::optional<bool> thin_;  // the answer of may_be_thin

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <deque>
+#include <utility>
 #include <vector>
 
 #include "predict/graded_size.h"
@@ -23,24 +24,33 @@ constexpr double least_share = 0.002;  // smallest size by walls and strips, rel
 /// Returns a value that rises from 0 to 1 between two bounds.
 double ramp(double x, double from, double to) { return std::clamp((x - from) / (to - from), 0.0, 1.0); }
 
-class Counter {
+}  // namespace
+
+class TetCounter::Counter {
  public:
-  Counter(const Shape& shape, const MeshOptions& options, const Model& model, double enough)
+  Counter(const Shape& shape, const MeshOptions& options, const Model& model)
       : shape_(shape),
         plc_(shape.plc()),
         options_(options),
         tolerance_(tolerance_of(plc_, options.bounds, options.size)),
         model_(model),
-        enough_(enough),
         sizing_(plc_, options, Frame()),
         pieces_(pieces_of_curves()),
-        sizes_(sources()) {}
+        sizes_(sources()) {
+    const Vector extent = plc_.bounds.max - plc_.bounds.min;
+    cubes_.push_back({plc_.bounds.centre(), 0.5 * std::max({extent.x, extent.y, extent.z})});
+    for (Index t = 0; t < plc_.triangles.size(); ++t) triangles_.push_back({t, shape_.corners(t)});
+    most_triangles_ = most_pieces + triangles_.size();
+  }
 
   // Begins with the regions, where most tets are found in the least time.
-  double run() {
+  double count_up_to(double enough) {
+    enough_ = enough;
     count_inside();
-    for (const double share : shape_.angles().of_vertex) add(1, share);
-    for (Index c = 0; c < plc_.curves.size() && !is_enough(); ++c) count_on_curve(c);
+    if (is_enough()) return tets_;
+    if (!std::exchange(has_vertices_, true))
+      for (const double share : shape_.angles().of_vertex) add(1, share);
+    while (next_curve_ < plc_.curves.size() && !is_enough()) count_on_curve(next_curve_++);
     count_on_patches();
     return tets_;
   }
@@ -173,14 +183,11 @@ class Counter {
 
   /// Counts the vertices on patches: halves triangles until each piece has one size.
   void count_on_patches() {
-    std::deque<Piece> pieces;
-    for (Index t = 0; t < plc_.triangles.size(); ++t) pieces.push_back({t, shape_.corners(t)});
-    const std::size_t most = most_pieces + pieces.size();
-    for (std::size_t done = 0; !pieces.empty() && !is_enough(); ++done) {
-      const Piece piece = pieces.front();
-      pieces.pop_front();
+    for (; !triangles_.empty() && !is_enough(); ++triangles_done_) {
+      const Piece piece = triangles_.front();
+      triangles_.pop_front();
       const auto& [a, b, c] = piece.corners;
-      const Point p = place_in(piece, done);
+      const Point p = place_in(piece, triangles_done_);
       const double radius = std::max({distance(p, a), distance(p, b), distance(p, c)});
       const double area = 0.5 * norm(cross(b - a, c - a));
       const Index patch = plc_.triangles[piece.triangle].patch;
@@ -191,8 +198,8 @@ class Counter {
       if (to_border + radius < model_.border_from * std::min(size, graded - change)) continue;
       const bool one_size = area < 0.15 * size * size ||
                             (change < 0.4 * size && to_border - radius > model_.border_to * (size + change));
-      if (!one_size && done + pieces.size() < most) {
-        halve(piece, pieces);
+      if (!one_size && triangles_done_ + triangles_.size() < most_triangles_) {
+        halve(piece, triangles_);
         continue;
       }
       const double across = std::min(size, size_across(piece.triangle, p));
@@ -230,13 +237,11 @@ class Counter {
 
   /// Counts the vertices of regions: divides the bounding box into cubes until each has one size.
   void count_inside() {
-    const Vector extent = plc_.bounds.max - plc_.bounds.min;
-    std::deque<Cube> cubes{{plc_.bounds.centre(), 0.5 * std::max({extent.x, extent.y, extent.z})}};
-    for (std::size_t done = 0; !cubes.empty() && !is_enough(); ++done) {
-      Cube cube = cubes.front();
-      cubes.pop_front();
-      const bool last = done + cubes.size() >= most_cubes;
-      const Point p = last ? place_in(cube, done) : cube.centre;
+    for (; !cubes_.empty() && !is_enough(); ++cubes_done_) {
+      Cube cube = cubes_.front();
+      cubes_.pop_front();
+      const bool last = cubes_done_ + cubes_.size() >= most_cubes;
+      const Point p = last ? place_in(cube, cubes_done_) : cube.centre;
       const double radius = std::sqrt(3.0) * cube.half, depth = shape_.distance_to_surface(p);
       if (cube.region == none && depth > (last ? 0 : radius)) cube.region = shape_.region_at(p);
       if (cube.region == 0) continue;
@@ -249,7 +254,7 @@ class Counter {
       const bool one_size = radius < 0.5 * size || ((graded >= wished + most_change || change < 0.4 * size) &&
                                                     depth - radius > model_.depth_to * size);
       if (!last && (cube.region == none || !one_size)) {
-        divide(cube, cubes);
+        divide(cube, cubes_);
         continue;
       }
       if (cube.region == none) continue;
@@ -279,18 +284,30 @@ class Counter {
   const Plc& plc_;
   const MeshOptions& options_;
   SurfaceTolerance tolerance_;
-  const Model& model_;
-  double enough_;
+  const Model model_;
+  double enough_ = 0;
   Sizing sizing_;
   std::vector<std::vector<CurvePiece>> pieces_;  // by curve
   GradedSize sizes_;
   double tets_ = 0;
+  // Where the next call goes on:
+  std::deque<Cube> cubes_;
+  std::size_t cubes_done_ = 0;
+  bool has_vertices_ = false;
+  Index next_curve_ = 0;
+  std::deque<Piece> triangles_;
+  std::size_t triangles_done_ = 0, most_triangles_ = 0;
 };
 
-}  // namespace
+TetCounter::TetCounter(const Shape& shape, const MeshOptions& options, const Model& model)
+    : counter_(std::make_unique<Counter>(shape, options, model)) {}
+
+TetCounter::~TetCounter() = default;
+
+double TetCounter::count_up_to(double enough) { return counter_->count_up_to(enough); }
 
 double count_tets(const Shape& shape, const MeshOptions& options, const Model& model, double enough) {
-  return Counter(shape, options, model, enough).run();
+  return TetCounter(shape, options, model).count_up_to(enough);
 }
 
 }  // namespace collarmesh::prediction

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <memory>
 
 #include "collarmesh/mesher.h"
 #include "predict/shape.h"
@@ -39,8 +40,24 @@ inline Model model_of_refinement() {
 
 /// Predicts the number of tets from the number of vertices and the share of directions around each that lead
 /// into regions. Infinite if a double cannot hold it. Cost: grows with the mesh, up to a bound that is linear
-/// in the complex. Stops as soon as it has counted `enough` tets and returns their number so far, which is
-/// all that many callers need.
+/// in the complex.
+class TetCounter {
+ public:
+  /// Keeps references to the shape and to the options.
+  TetCounter(const Shape& shape, const MeshOptions& options, const Model& model = {});
+  ~TetCounter();
+  TetCounter(const TetCounter&) = delete;
+  TetCounter& operator=(const TetCounter&) = delete;
+  /// Goes on where the last call ended. Stops as soon as it has counted `enough` tets, which is all that many
+  /// callers need. Returns the number so far.
+  double count_up_to(double enough);
+
+ private:
+  class Counter;
+  std::unique_ptr<Counter> counter_;
+};
+
+/// Predicts the number of tets.
 double count_tets(const Shape& shape, const MeshOptions& options, const Model& model = {},
                   double enough = INFINITY);
 

@@ -1,0 +1,59 @@
+#include "face_integrals.h"
+
+#include <BRepGProp_Domain.hxx>
+#include <BRepGProp_Face.hxx>
+#include <BRepGProp_Sinert.hxx>
+#include <BRepGProp_Vinert.hxx>
+#include <Standard_Failure.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Face.hxx>
+
+#include <limits>
+
+#include "topology.h"
+
+namespace collarmesh::brep {
+
+FaceIntegrals::FaceIntegrals(const TopoDS_Shape& shape) {
+  const Point centre = place_of(shape);
+  apex_ = gp_Pnt(centre.x, centre.y, centre.z);
+  for (const TopoDS_Shape& face : subshapes(shape, TopAbs_FACE)) measures_.Add(face, measure(face));
+}
+
+double FaceIntegrals::cone(const TopoDS_Shape& face) const {
+  const double cone = measures_.FindFromKey(face).cone;
+  return face.Orientation() == TopAbs_REVERSED ? -cone : cone;
+}
+
+FaceMeasure FaceIntegrals::measure(const TopoDS_Shape& face) const {
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  try {
+    if (const auto measured = integrate_along_edges(TopoDS::Face(face), apex_)) return *measured;
+    return {integrated<BRepGProp_Sinert>(face), integrated<BRepGProp_Vinert>(face)};
+  } catch (const Standard_Failure&) {
+    return {unknown, unknown};
+  }
+}
+
+/// Integrates over a face as it lies in space, whatever its orientation. Adaptive integrals are much more
+/// exact than fixed ones, which have too few points for splines of many spans.
+template <class Integral>
+double FaceIntegrals::integrated(const TopoDS_Shape& face) const {
+  const TopoDS_Face forward = TopoDS::Face(face.Oriented(TopAbs_FORWARD));
+  BRepGProp_Face surface(forward);
+  BRepGProp_Domain domain(forward);
+  const int spans = surface.SUIntSubs() * surface.SVIntSubs();
+  constexpr int few = 8, many = 10'000;             // with many spans adaptive integrals would take long
+  const double error = spans <= few ? 1e-3 : 1e-5;  // OpenCASCADE's estimate; on waves it is too low
+  Integral integral;
+  integral.SetLocation(apex_);
+  if (forward.NbChildren() == 0)
+    integral.Perform(surface, error);
+  else if (spans > many)
+    integral.Perform(surface, domain);
+  else
+    integral.Perform(surface, domain, error);
+  return integral.Mass();
+}
+
+}  // namespace collarmesh::brep
