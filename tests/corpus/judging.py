@@ -33,10 +33,15 @@ def run(*arguments, limit=TIME_LIMIT):
         raise Failed(f"still running after {limit} s")
 
 
+def is_due(what, days):
+    """Returns whether a run of this name is due today if each is due once in so many days."""
+    return (zlib.crc32(what.encode()) + datetime.date.today().toordinal()) % days == 0
+
+
 def verdict(mesh, *against, radius_edge=2):
     """Runs the judge if meshes of this name and bound are due today; returns its last line if it finds no
     fault. The judge knows no thin tetrahedra, so coarsened meshes need an infinite bound. Raises Failed."""
-    if (zlib.crc32(f"{pathlib.Path(mesh).name} {radius_edge}".encode()) + datetime.date.today().toordinal()) % DAYS:
+    if not is_due(f"{pathlib.Path(mesh).name} {radius_edge}", DAYS):
         return "not judged today"
     result = run(sys.executable, JUDGE, mesh, *against, "--rho", radius_edge)
     last = (result.stdout + result.stderr or "it says nothing").strip().splitlines()[-1]

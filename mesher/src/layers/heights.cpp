@@ -219,12 +219,7 @@ double Heights::relative_jacobian(const WallSide& side) const {
     const unsigned z = first_low, i = (z + 1) % 3, j = (z + 2) % 3;
     for (const double b : jacobians_at_base({below[j], below[i], above[i], above[j], below[z]})) see(b);
   } else {
-    see(six_volume(below[0], below[1], below[2], above[first_raised]));
-    // A cell flat against the wall is as bad as a folded one.
-    const Vector n = cross(below[1] - below[0], below[2] - below[0]);
-    see(flattest * norm(n) * length_[side.nodes[first_raised]]);
-    largest = std::max(largest, 0.0);
-    return least > 0 ? 1 : -1;
+    return six_volume(below[0], below[1], below[2], above[first_raised]) > 0 ? 1 : -1;
   }
   return least / largest;
 }
