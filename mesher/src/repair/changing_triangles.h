@@ -45,7 +45,7 @@ class ChangingTriangles {
       for (Index side = first_[point]; side != none; side = next_[side]) visit(side);
   }
   bool uses(Index point) const { return point < first_.size() && first_[point] != none; }
-  /// Returns the corner of a triangle that belongs to the fewest triangles.
+  /// Returns the corner of a triangle at which the fewest triangles meet.
   Index least_busy(const facets::Corners& corners) const;
   /// Returns the sides on an edge, in order.
   std::vector<Index> sides(const Edge& edge) const;
