@@ -23,7 +23,7 @@ from freecad.collarmesh_workbench import mesh_object, task_panel, view_provider 
 
 PARTS = int(os.environ.get("COLLARMESH_BENCH_PARTS", 21))
 LIMIT = 120  # seconds to wait for a table
-ROW = ", ".join(f"{which} {{:.2f}} s (processors: FreeCAD {{:.2f}} s, mesher {{:.2f}} s)"
+ROW = ", ".join(f"{which} {{:.2f}} s (CPU time: FreeCAD {{:.2f}} s, mesher {{:.2f}} s)"
                 for which in ("chosen", "all"))
 
 

@@ -939,8 +939,8 @@
       <translation>Der Vernetzer wurde abgebrochen.</translation>
     </message>
     <message>
-      <source>The mesher wrote a mesh without elements; please report it with the shape.</source>
-      <translation>Der Vernetzer hat ein Netz ohne Elemente geschrieben; bitte melden Sie das mit der Form.</translation>
+      <source>The mesher wrote a mesh without elements of the chosen dimension; please report this, with the shape.</source>
+      <translation>Der Vernetzer hat ein Netz ohne Elemente der gewählten Dimension geschrieben; bitte melden Sie das mit der Form.</translation>
     </message>
     <message>
       <source>The mesher {path} is no program; correct its path in the preferences.</source>
@@ -1055,8 +1055,8 @@
       <translation>Volumen</translation>
     </message>
     <message>
-      <source>Volumes of the shape and of its mesh. A smaller size, or a smaller largest distance from the shape, brings them closer</source>
-      <translation>Volumen der Form und ihres Netzes. Eine kleinere Größe oder ein kleinerer größter Abstand von der Form bringt sie näher zusammen</translation>
+      <source>Volumes of the shape and of its mesh. To bring them closer to each other, choose a smaller size or reduce “Largest distance from the shape”</source>
+      <translation>Volumen der Form und ihres Netzes. Eine kleinere Größe oder ein kleinerer Wert von „Größter Abstand von der Form“ bringt sie näher zusammen</translation>
     </message>
     <message>
       <source>Warnings ({count})</source>
@@ -1367,6 +1367,10 @@
       <translation>{label}: geschätzter Fehler {error} % der Energienorm, mit {elements} Elementen</translation>
     </message>
     <message>
+      <source>{label}: faces for constraints need a mesh with elements that was made from a triangle mesh.</source>
+      <translation>{label}: Flächen für Randbedingungen brauchen ein Netz mit Elementen, das aus einem Dreiecksnetz entstanden ist.</translation>
+    </message>
+    <message>
       <source>{label}: layers are on both sides of a face, or inside one solid; {count} are chosen.</source>
       <translation>{label}: Schichten liegen auf beiden Seiten einer Fläche oder in einem Körper; {count} sind gewählt.</translation>
     </message>
@@ -1377,10 +1381,6 @@
     <message>
       <source>{label}: nothing is deformed, so there is no error to estimate.</source>
       <translation>{label}: nichts ist verformt, also gibt es keinen Fehler zu schätzen.</translation>
-    </message>
-    <message>
-      <source>{label}: only a mesh of triangles needs faces for constraints, and it must be made first.</source>
-      <translation>{label}: nur ein Dreiecksnetz braucht Flächen für Randbedingungen, und es muss zuerst vernetzt sein.</translation>
     </message>
     <message>
       <source>{label}: the mesh has nothing of {name}: it lies inside another solid, or repair has removed it; choose others.</source>

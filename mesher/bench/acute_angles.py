@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Measures how the number of tets depends on the angle at creases, for wedges, fans, pyramids and needles, at a
 target edge length as large as the shapes. Compares with the figures of the feasibility study from which this
-project's collars come. That study called angles below 80 degrees acute, so its shapes are also meshed with this
-crease angle. Prints a Markdown table."""
+project's collars come. That study called angles below 80 degrees acute, so its shapes are also meshed with
+`--crease-angle 80`. Prints a Markdown table."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ shapes: list[tuple] = (
     + [("pyramid", 7, angle) for angle in (60, 10, 2)])
 
 header = ["shape", "angle", "outside collars", "in collars", "dihedral angle in collars", "refinement s",
-          "at crease angle 80", "study's", "share of it"]
+          "with --crease-angle 80", "study's", "share of it"]
 
 
 def crease_angle(family: str, first: float, second: float) -> float:

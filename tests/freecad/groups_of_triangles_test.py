@@ -246,7 +246,7 @@ class Groups(unittest.TestCase):
         solid = self.document.addObject("Part::Box", "Box")
         self.document.recompute()
         of_solid = collarmesh_workbench.mesh(solid, size=4)
-        with self.assertRaisesRegex(MesherError, "only a mesh of triangles"):
+        with self.assertRaisesRegex(MesherError, "made from a triangle mesh"):
             collarmesh_workbench.references_to_groups(of_solid, "Face1")
 
     def test_a_finely_curved_surface_has_few_faces(self):

@@ -44,7 +44,7 @@ async def click_without_mesh(obj):
     await w.open_panel(obj)
     obj.FemMesh = Fem.FemMesh()
     await w.click(w.child("constraint_faces"))
-    w.require("it must be made first" in w.said(), w.said())
+    w.require("need a mesh with elements" in w.said(), w.said())
     await w.close_panel()
 
 

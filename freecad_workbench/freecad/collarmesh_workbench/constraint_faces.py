@@ -1,6 +1,6 @@
-"""Faces that can be chosen for constraints on the mesh of a triangle mesh, which has no faces of its own. For
-each group of the mesh's faces, an object has a planar face, which FEM's panels accept like a part's face.
-Face1 belongs to the first group, Face2 to the second one, and so on; groups that are not planar have further
+"""Faces that can be chosen for constraints on an FEM mesh that was made from a triangle mesh, which has no faces of its
+own to choose. An object has a planar face for each group of faces of the FEM mesh; FEM's panels accept it like a face
+of a part. Face1 belongs to the first group, Face2 to the second one, and so on; groups that are not planar have further
 faces after these. Each face stands for its whole group: a solver gets the nodes of the group."""
 
 import FreeCAD
@@ -36,7 +36,7 @@ def is_ours(obj):
 
 
 def can_be_made(mesh_object):
-    """Returns whether the object is a mesh of a triangle mesh, with elements."""
+    """Returns whether the object is an FEM mesh with elements that was made from a triangle mesh."""
     part = compatibility.meshed_object(mesh_object)
     return part is not None and elements.is_there(mesh_object.FemMesh) and inputs.triangles_of(part) is not None
 
@@ -49,8 +49,8 @@ def of(mesh_object):
 def make(mesh_object):
     """Returns the object with the faces; makes it if necessary. Raises MesherError."""
     if not can_be_made(mesh_object):
-        raise MesherError(translate("collarmesh", "{label}: only a mesh of triangles needs faces for constraints, and "
-                                                  "it must be made first."), label=mesh_object.Label)
+        raise MesherError(translate("collarmesh", "{label}: faces for constraints need a mesh with elements that was "
+                                                  "made from a triangle mesh."), label=mesh_object.Label)
     there = of(mesh_object)
     if there is not None:
         return there

@@ -102,7 +102,8 @@ def finish(obj, job, exit_code=0):
     fem_mesh = Fem.read(job.mesh)
     if elements.dimension(fem_mesh) != job.dimension:
         raise MesherError(
-            translate("collarmesh", "The mesher wrote a mesh without elements; please report it with the shape."))
+            translate("collarmesh", "The mesher wrote a mesh without elements of the chosen dimension; please report "
+                                    "this, with the shape."))
     contact_groups.add(job.meshed, fem_mesh, job.apart)
     groups.add_groups(obj, fem_mesh)
     report = job.report()

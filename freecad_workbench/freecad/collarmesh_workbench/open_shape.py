@@ -14,9 +14,9 @@ _known = collections.deque(maxlen=SHAPES)  # (shape, number of its open edges)
 
 
 def dimension(part, asked, fill_holes):
-    """Returns the dimension of the elements: `asked` or, if that is 0, the dimension of the shape. It is 3
-    for solids and for shapes that enclose a volume, also after filling holes; 2 for faces and open surfaces;
-    1 for wires."""
+    """Returns the dimension of the elements: `asked` or, if that is 0, the dimension of the shape. It is 3 for solids,
+    for closed surfaces and, with `fill_holes`, for all shapes with faces; 2 for other shapes with faces; 1 for
+    wires."""
     if asked:
         return asked
     shape = _without_volume(part)

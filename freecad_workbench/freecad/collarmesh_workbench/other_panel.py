@@ -8,8 +8,8 @@ from .translations import translate
 
 
 def is_in_the_way():
-    """Returns whether a panel is open that FreeCAD does not close when an object is edited, and tells the
-    user. (It closes panels of edited objects.)"""
+    """Returns whether an open panel is in the way of editing an object, and tells the user if so. FreeCAD itself closes
+    the panel of an object that is being edited, but no other panel."""
     documents = map(FreeCADGui.getDocument, FreeCAD.listDocuments())
     if not FreeCADGui.Control.activeDialog() or any(each.getInEdit() is not None for each in documents):
         return False

@@ -48,8 +48,8 @@ class RegionsTable(WholeTable):
         self.setSelectionMode(QtGui.QAbstractItemView.NoSelection)
         self.setFocusPolicy(QtCore.Qt.NoFocus)
         self.setToolTip(translate("collarmesh",
-                                  "Volumes of the shape and of its mesh. A smaller size, or a smaller largest "
-                                  "distance from the shape, brings them closer"))
+                                  "Volumes of the shape and of its mesh. To bring them closer to each other, choose a "
+                                  "smaller size or reduce “Largest distance from the shape”"))
 
     def show_report(self, report):
         self.clear()

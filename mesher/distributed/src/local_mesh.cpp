@@ -41,7 +41,8 @@ std::size_t for_each_place(DM dm, PetscScalar* values, const Visit& visit) {
   return edges;
 }
 
-/// The vertices and edges of a face or tet, numbered from 0.
+/// The vertices and edges of a face or tet, with their numbers in the part of this rank, which begin at 0 for
+/// vertices and for edges.
 template <std::size_t corners>
 struct Closure {
   static constexpr std::size_t edge_count = corners == 4 ? 6 : 3;

@@ -43,17 +43,19 @@ struct ImproveReport {
 
 /// Removes slivers by hill climbing on the smallest sine of a tet's dihedral angles (obtuse ones count 0.7
 /// times, so that 155 degrees is about as bad as 17), worst tets first. The operations: removing edges,
-/// inside regions and on patches; moving vertices within their features; collapsing edges if no new edge is
-/// longer than the edges before; inserting vertices on edges (Freitag and Ollivier-Gooch 1997; the edge
-/// removal is Klincsek's optimal triangulation of the ring, as in Klingner and Shewchuk 2007, section 2). A
-/// sliver with two faces on a smooth patch is removed from its region.
+/// inside regions and on patches; moving vertices within their features; collapsing edges, if no new edge is
+/// longer than the longest one of the tets that change; inserting vertices on edges (Freitag and
+/// Ollivier-Gooch 1997; the edge removal is Klincsek's optimal triangulation of the ring, as in Klingner and
+/// Shewchuk 2007, section 2). A sliver with two faces on a smooth patch is removed from its region. For a tet
+/// with an angle above the bound for thin tets, also fills the space around two of its edges with new tets,
+/// and collapses edges whatever the new lengths.
 /// For the few tets that no operation improves, tries an operation that makes tets worse and improves its
-/// result; undoes both unless the tets are better afterwards, compared from the worst one up. No other
-/// operation makes the worst tet of its cavity worse, makes a tet exceed the radius-edge bound if it may not
-/// be thin, touches a collar, leaves the plane of a planar patch, or puts faces or edges farther from their
-/// smooth patch or curve than `bounds` allow. Preconditions: `mesh` comes from `generate` for `plc`, first
-/// order, with the same `Bounds::distance`. Cost: linear in the tets; poor tets cost little if they can reach
-/// the bound.
+/// result; undoes both unless the tets are better afterwards, compared from the worst one up. Apart from
+/// these trials, no operation makes the worst tet of its cavity worse. No operation at all makes a tet exceed
+/// the radius-edge bound if it may not be thin, touches a collar, leaves the plane of a planar patch, or puts
+/// faces or edges farther from their smooth patch or curve than `bounds` allow. Preconditions: `mesh` comes
+/// from `generate` for `plc`, first order, with the same `Bounds::distance`. Cost: linear in the tets; poor
+/// tets cost little if they can reach `min_dihedral`.
 ImproveReport improve(TetMesh& mesh, const Plc& plc, const ImproveOptions& options = {},
                       const Execution& execution = {});
 

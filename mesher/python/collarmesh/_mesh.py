@@ -77,7 +77,8 @@ def _cells_with_nodes(cells: ArrayLike, what: str, columns: Tuple[int, int]) -> 
 
 
 def _sides_between_tags(tets: Array, tags: Array) -> Tuple[Array, Array]:
-    """Returns the boundary of the tets with each tag, and a tag for each pair of tags that are neighbours."""
+    """Returns the triangles between tets with different tags and those on the outside, and a tag of each triangle: one
+    for each pair of tags, and one for each tag with the outside."""
     if len(tets) == 0:
         return tets[:, :3], tags
     columns = [side[: 3 if tets.shape[1] == 4 else 6] for side in _SIDES]

@@ -55,8 +55,8 @@ constexpr double no_ratio = 0.1;
 constexpr double distance_left = 0.75, angle_reserve = 0.05;
 constexpr unsigned most_rounds_of_poor = 4;
 // The whole mesh is brought to its size first if more than the share `mostly` of its tets is beyond the
-// bounds on angles, and more than `least_beyond` is so although short edges of the surface lower the bounds
-// beside them.
+// bounds on angles, and more than the share `least_beyond` is beyond even the bounds that short edges of the
+// surface lower.
 constexpr double mostly = 0.1, least_beyond = 0.02;
 // If the smallest angle of a mesh, away from creases and narrow places, is at least this (degrees),
 // remeshing keeps it so.
@@ -279,8 +279,9 @@ class Remeshing {
     return options;
   }
 
-  /// Divides long edges until none is left, or none of those left can be divided. Returns how many edges it
-  /// has divided.
+  /// Divides long edges, and improves the tets after each round, until no long edge can be divided or
+  /// `most_rounds` rounds are made. With a given complex, then divides edges that are too far from its
+  /// features. Returns how many edges it has divided in all.
   std::size_t refine(bool first) {
     EditableMesh piece = edited();
     if (first) improve_shapes(piece, false);

@@ -20,8 +20,8 @@ namespace collarmesh::remeshing::adapting {
 
 namespace {
 
-// Largest distance from the facets, relative to the tolerance. Edges between nodes on the smooth geometry
-// need the rest.
+// Largest distance of the smooth geometry from the facets, relative to the tolerance. The rest of the
+// tolerance is left for mesh edges, which are off the smooth geometry between their nodes.
 constexpr double share_of_tolerance = 0.7;
 // Triangles of a patch, or segments of a curve, that turn by more than 50 degrees (cosine) are not smooth.
 constexpr double least_cosine_of_turn = 0.643;

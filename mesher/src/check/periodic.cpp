@@ -33,8 +33,9 @@ bool is_translation(const TetMesh::Motion& motion) { return motion.rows == TetMe
 /// - Evaluating R p + s: three products and two sums for each row, |error| <= 3 u |R| |p| elementwise, at
 ///   most 3 sqrt(3) u r in norm as the rows have length 1; then the last sum, u r. Together e = (1 + 3
 ///   sqrt(3)) u r (terms in u^2 are negligible). If R is the identity, only the last sum is rounded.
-/// - In a cell of three pairs, two sequences of maps lead to a corner. Their results differ by the
-///   rounding of all evaluations along both, at most six with those of this check.
+/// - Where pairs meet, as at the edges and corners of a cell of three pairs, p and q may come from one node
+///   by different motions, each composed of the motions of up to three pairs. At most six evaluations, this
+///   check's included, then separate p and q: three on either side.
 /// - A mid-edge node is the middle of two nodes: one sum on either side, u r each.
 /// - Corners that the input gives are not moved to their images, so the rounding of the motion itself counts:
 ///   if it is a translation from the middle of one box to that of the other, three sums, u r each.

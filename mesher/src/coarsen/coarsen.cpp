@@ -34,8 +34,8 @@ constexpr unsigned plain_passes = 4, repair_passes = 6, rounds = 12;
 // Largest number of repair steps per collapse. A step rarely fixes two tets, so repair gives up when more
 // tets are poor than steps remain.
 constexpr unsigned most_repairs = 24;
-// Vertices whose shortest edge is below this share of its target length get collapses with repairs, most of
-// which fail.
+// Only vertices whose shortest edge is below this share of its target length get collapses with repairs,
+// because most of these collapses fail.
 constexpr double repaired_below = 0.65;
 // Vertices inside regions are tried if their shortest edge is below this share of its target length. After
 // refinement half of these vertices have a shortest edge of 0.75 to 0.8, which can hardly ever be collapsed.
@@ -157,7 +157,7 @@ class Coarsening {
     return in_order(std::move(candidates));
   }
 
-  // Returns the shortest edge at each end, in the order of ends.
+  // Returns each end once, with its shortest edge; sorted by end.
   std::vector<ShortEdge> shortest_of_each(std::vector<ShortEdge> edges) const {
     constexpr std::size_t points_per_edge = 16;
     const std::size_t points = mesh().points.size();
@@ -176,7 +176,8 @@ class Coarsening {
     return found;
   }
 
-  // Finds the edges of a tet that are short enough to try the vertices at their ends.
+  // Adds the ends of the short edges of a tet, each with the squared length of its edge, if a collapse of the
+  // end is tried.
   void find_short_edges(Index tet, std::vector<ShortEdge>& ends) const {
     constexpr double surely_long = (1 + 1e-9) * collapsed_below;
     const auto& v = complex()[tet].corners;
@@ -190,7 +191,7 @@ class Coarsening {
     }
   }
 
-  // Returns whether a vertex with an edge of this squared length in the metric is tried.
+  // Returns whether a collapse is tried of a vertex with an edge of this squared length in the metric.
   bool is_asked(Index vertex, double length) const {
     const unsigned dimension = mesh().features[vertex].dimension;
     return dimension != 0 && (dimension < 3 || length < square(asked_inside_below));

@@ -160,8 +160,8 @@ class NearTouchingFinder {
            });
   }
 
-  // Returns whether one of two features is part of the other, or both meet in a common one. Precondition: the
-  // dimension of the first is not higher than that of the second.
+  // Returns whether one of two features is part of the other, or whether both meet in a third one.
+  // Precondition: the dimension of the first is not higher than that of the second.
   bool related(const Element& a, const Element& b) const {
     if (a.dimension == 0) {
       if (b.dimension == 1) return plc_.vertex_on_curve(a.feature, b.feature);
@@ -187,8 +187,9 @@ class NearTouchingFinder {
     if (d < nearest.squared_distance) nearest = {d, 0.5 * (p + q)};
   }
 
-  // Compares the nearest points of the lines of two segments (Ericson: Real-Time Collision Detection, section
-  // 5.1.9), if they lie within both segments; if not, an end is nearest, which other calls handle.
+  // Takes the nearest points of the lines of two segments (Ericson: Real-Time Collision Detection, section
+  // 5.1.9) into account, if they lie within both segments; if not, an end of a segment is nearest, which
+  // other calls handle.
   static void keep_nearer_of_lines(Nearest& nearest, const Point& p, const Point& q, const Point& r,
                                    const Point& s) {
     const Vector u = q - p, v = s - r, w = p - r;

@@ -15,7 +15,7 @@ constexpr int unv_group_element = 8;
 
 /// The types of elements with their order of nodes: around the first face, corners and mid-edge nodes in
 /// turn; then those of the edges that rise from it; then the opposite face or corner. The format has no
-/// pyramids: they are written as bricks whose upper nodes are one.
+/// pyramids: they are written as bricks whose upper nodes are all the apex.
 struct UnvType {
   int number;
   CellKind kind;

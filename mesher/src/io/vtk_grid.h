@@ -32,7 +32,7 @@ struct VtkArray {
 /// Cells: those of volumes (tets, prisms, pyramids), then faces (triangles, quadrangles), then curve edges.
 /// Cell arrays, with a value for every cell:
 ///   region                    of a volume; of a face the one behind it, or in front if none is behind
-///   region_back, region_front of a face: TetMesh::face_regions; of a volume both its region
+///   region_back, region_front of a face: TetMesh::face_regions; of a volume: its own region; 0 for edges
 ///   tag                       of the cell's region, patch or curve
 ///   feature                   index of the patch or curve in the complex; -1: unknown or a volume
 ///   collar, crease            TetMesh::tet_collar, TetMesh::tet_crease; 0 for other cells

@@ -50,7 +50,8 @@ class LayerCurving {
 
   bool in_core(Index tet) const { return mesh_.layers.tet_layer[tet] == 0; }
 
-  /// Makes the core a mesh of second order on its own, which keeps its tets.
+  /// Gives the core (the tets outside the layers) mid-edge nodes, as a mesh by itself. Its tets stay the
+  /// same. Returns false if cancelled.
   bool curve_core() {
     TetMesh core;
     core.points = mesh_.points;

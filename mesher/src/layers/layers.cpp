@@ -21,8 +21,9 @@ namespace collarmesh {
 namespace layering {
 namespace {
 
-// There are at most this many tries. Each lowers layers, or leaves them out, where the last one failed. After
-// `last_levels` tries, layers are also left out in ever wider rings around these places.
+// There are at most this many tries, besides those after folds (`most_refoldings`). Each lowers layers, or
+// leaves them out, where the last one failed. After `last_levels` tries, layers are also left out in ever
+// wider rings around these places.
 constexpr unsigned most_tries = 9, last_levels = 4;
 // If a node fails even at the level `Core::strictest`, its height is multiplied by this share in the next
 // try. If it fails again, it gets no layers.

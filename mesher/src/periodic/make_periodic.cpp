@@ -69,7 +69,7 @@ struct Surface {
     for (Index f = 0; f < mesh.faces.size(); ++f)
       if (mesh.face_patch[f] != none) faces[mesh.face_patch[f]].push_back(f);
   }
-  /// Returns the nodes between the ends of a curve, or all nodes of a closed one.
+  /// Returns the places of the nodes between the ends of a curve, or of all nodes of a closed one.
   std::vector<Point> places_on_curve(const TetMesh& mesh, Index curve) const {
     std::vector<Point> places;
     for (const Index node : chains[curve].nodes)
@@ -96,8 +96,9 @@ struct Surface {
     }
     return places;
   }
-  /// Returns the nodes inside a patch. `targets`: target edge lengths by vertex; if there are any, leaves out
-  /// nodes that are far nearer to other nodes than these lengths.
+  /// Returns the places of the nodes inside a patch, each with the length of its shortest edge there.
+  /// `targets`: target edge lengths by vertex; if there are any, leaves out nodes that are far nearer to
+  /// other nodes than these lengths.
   std::vector<SpacedPlace> spaced_inside(const TetMesh& mesh, Index patch,
                                          const std::vector<double>& targets) const {
     if (!targets.empty()) return sparse_nodes(mesh, faces[patch], targets);

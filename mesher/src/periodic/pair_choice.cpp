@@ -21,8 +21,8 @@ constexpr double at_end = 1e-9;  // relative to the diagonal; patches this near 
                                  // the end
 
 constexpr std::string_view grammar =
-    "a pair is x, y, z or FIRST=SECOND, optionally followed by :translation,DX,DY,DZ or "
-    ":rotation,AXIS,DEGREES";
+    "a pair is x, y, z, FIRST=SECOND or FIRST=SECOND:MOTION, where MOTION is translation,DX,DY,DZ or "
+    "rotation,AXIS,DEGREES or rotation,PX,PY,PZ,DX,DY,DZ,DEGREES";
 
 [[noreturn]] void refuse(const std::string& text, const std::string& why) {
   throw OptionError(fmt::format("periodic '{}': {}", text, why));

@@ -19,8 +19,9 @@ void improve_before_coarsening(MeshJob& job, TetMesh& mesh);
 void coarsen_and_improve(MeshJob& job, TetMesh& mesh, const std::vector<Index>& fixed,
                          bool thoroughly = true);
 
-/// Coarsens and improves an edited mesh by these options. If asked to, inserts vertices where tets still
-/// miss their bounds. Completes interior nodes.
+/// Coarsens an edited mesh by `options`, then improves it by the options of the job. `insert`: then also
+/// inserts and removes vertices at tets that miss or nearly miss their bounds. Last, if the job asks for
+/// interior nodes, replaces tets that have no corner inside a region.
 void reshape(MeshJob& job, remeshing::EditableMesh& edited, const MeshOptions& options, bool insert);
 
 }  // namespace collarmesh::pipeline

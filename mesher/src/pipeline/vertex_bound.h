@@ -15,8 +15,8 @@ namespace collarmesh {
 std::size_t most_vertices_expected(const Plc& plc, const PipelineOptions& options);
 
 /// Returns an upper limit, at most a million, on the number of vertices that refinement needs on rods and
-/// other bodies far thinner than the size. Walls thinner than the longest edge that keeps the tolerance may
-/// need more.
+/// other curved bodies far thinner than the smallest target edge length. Walls thinner than the longest edge
+/// that keeps the tolerance do not count; they may need more.
 std::size_t most_vertices_on_rods(const Plc& plc, const MeshOptions& options);
 
 /// Returns the smallest of the target edge lengths that are given as numbers, absolute. If none is given for

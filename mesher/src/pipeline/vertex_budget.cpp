@@ -14,7 +14,7 @@ void VertexBudget::bound(Ways ways) {
 }
 
 // Finds the budget of vertices for a complex. A budget that the options give counts unless the computed one
-// is smaller; if there are no other ways, the given one always counts.
+// is smaller; if there is no other way to make a mesh (`Ways::none`), the given one always counts.
 void VertexBudget::find(const Plc& plc, const PipelineOptions& options) {
   // Bodies far thinner than the size really need many vertices.
   constexpr std::size_t times_without_other_ways = 2, least_without_other_ways = 300'000;

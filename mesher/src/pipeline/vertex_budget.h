@@ -17,8 +17,8 @@ class VertexBudget {
   /// Keeps a reference to the options.
   explicit VertexBudget(const PipelineOptions& given) : given_(given) {}
 
-  /// Bounds the number of vertices of further refinements, less tightly if there are no other ways. The bound
-  /// is computed when it is needed.
+  /// Bounds the number of vertices of further refinements, less tightly if there is no other way to make a
+  /// mesh. The bound is computed when it is needed.
   void bound(Ways ways);
 
   /// Computes the number for a complex with these options, unless it is known.

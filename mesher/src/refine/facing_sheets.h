@@ -45,11 +45,11 @@ class FacingSheets {
   /// Records that these vertices face each other; the second one exists or is inserted next.
   void note_pair(Index a, Index b);
   /// Returns whether a cell is within the radius-edge bound if edges between vertices of a pair do not count.
-  /// Several threads may call it at once, while no pairs are recorded.
+  /// Several threads may call it at once, but not while `note_pair` runs.
   bool is_within(Index cell, double bound) const;
   /// Returns the width of the gap that a flat cell spans if all its corners lie on features: between vertices
-  /// of pairs, or of features that have no point in common. Infinite if it spans no gap. Thread-safe while no
-  /// pairs are recorded.
+  /// of pairs, or of features that have no point in common. Infinite if it spans no gap. Several threads may
+  /// call it at once, but not while `note_pair` runs.
   double gap_across(Index cell) const;
 
   std::size_t bytes() const;

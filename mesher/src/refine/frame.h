@@ -20,7 +20,8 @@ class Frame {
 
   Point inside(const Point& p) const { return p - shift_; }
   Point outside(const Point& p) const { return p + shift_; }
-  /// Returns the nearest point whose input coordinates are doubles; only such points are inserted.
+  /// Returns the nearest point whose coordinates in the input are representable as doubles; only such points
+  /// are inserted.
   Point rounded(const Point& p) const { return inside(outside(p)); }
   const Vector& shift() const { return shift_; }
 

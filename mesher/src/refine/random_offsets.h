@@ -7,9 +7,9 @@
 namespace collarmesh {
 
 /// Pseudo-random offsets of inserted points: with exact centres, cospherical input would lead to flat cells
-/// whose refinement never ends. The loop and the parts it drives share one sequence, so the order of calls
-/// determines the mesh. BlockRefinement starts a sequence for each cell or triangle, from its centre and the
-/// seed, so that the number of threads does not matter.
+/// whose refinement never ends. The refinement loop (`Refinement`) and the parts that it drives share one
+/// sequence, so the order of their calls determines the mesh. BlockRefinement starts a sequence for each cell
+/// or triangle, from its centre and the seed, so that the number of threads does not matter.
 class RandomOffsets {
  public:
   /// Keeps the collars by reference.

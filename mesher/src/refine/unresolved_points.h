@@ -66,7 +66,7 @@ class UnresolvedPoints {
   /// Returns whether a queue entry with this stamp is current. If the point is still needed, but the mesh has
   /// become finer there since, queues it again, because other points may have larger balls now.
   bool is_due(Index point, std::uint32_t stamp);
-  /// Queues a point again if it is still needed. Call it after another point was inserted instead.
+  /// Queues a point again if it is still needed. For use after another point was inserted in its place.
   void queue_again(Index point) {
     if (points_[point].object != none) queue(point);
   }
@@ -75,9 +75,10 @@ class UnresolvedPoints {
   /// Records that a point becomes this vertex, which exists or is inserted next.
   void resolve(Index point, Index vertex);
 
-  /// Returns the point that a candidate with this zone warps to (paper, Procedure 2): of the points within
-  /// theta r of the ball's centre whose dimension is lower than the candidate's, one of the lowest dimension,
-  /// the nearest of several. None if there is no such point.
+  /// Returns the unresolved point that a candidate with this zone warps to (paper, Procedure 2). Only points
+  /// on features of lower dimension than the candidate's count, and only within theta times the radius of the
+  /// ball to destroy from its centre. Returns the nearest one among those of the lowest dimension; none if
+  /// there are none.
   Index warp_target(const ConflictZone& zone, const Candidate& candidate) const;
   /// Returns the only unresolved vertex of the complex in the Voronoi cell of this mesh vertex; none if there
   /// are several or none.

@@ -45,7 +45,7 @@ class ChangingTriangles {
       for (Index side = first_[point]; side != none; side = next_[side]) visit(side);
   }
   bool uses(Index point) const { return point < first_.size() && first_[point] != none; }
-  /// Returns the corner of a triangle that belongs to the fewest triangles.
+  /// Returns the corner of a triangle at which the fewest triangles meet.
   Index least_busy(const facets::Corners& corners) const;
   /// Returns the sides on an edge, in order.
   std::vector<Index> sides(const Edge& edge) const;
@@ -156,7 +156,9 @@ class ChangingTriangles {
   double reach_;
   Work& work_;
   const BoxFrame frame_;  // axes of the boxes
-  // Whether there was a search near few changed triangles; only later ones build trees of all triangles.
+  // Whether `for_each_near_pair` or `for_each_corner_near_edge` was already called with few changed
+  // triangles. The first such call makes trees of the changed triangles only; later ones use trees of all
+  // triangles.
   bool searched_triangles_ = false, searched_corners_ = false;
   std::size_t count_ = 0;
   std::vector<bool> alive_;

@@ -9,7 +9,7 @@
 
 namespace collarmesh::repairing {
 
-/// A small feature to be collapsed, and an edge or a triangle of it in the draft.
+/// A small feature chosen for collapse, and an edge or a triangle of it in the draft.
 struct CollapsedFeature {
   SmallFeature feature;
   facets::Corners corners{none, none, none};  ///< sorted; the last one of an edge is `none`
@@ -18,8 +18,9 @@ struct CollapsedFeature {
 /// Collapses the features of a complex that are smaller than `size` (absolute) in the draft that it was built
 /// from: curves to points, narrow patches and sharp tips of patches to curves. Keeps features with the kept
 /// tags of the options, curves with names, the patches of a group if all are small, and patches around
-/// regions thinner than the size. Returns the features to collapse; `gone_from` finds those that are gone.
-/// Corners move by less than the size; surfaces stay closed, but facets may intersect. Cost: O(n log n).
+/// regions thinner than the size. Returns the features that it chose for collapse. Some of them may stay or
+/// be restored later; `gone_from` finds those that are gone. Corners move by less than the size; surfaces
+/// stay closed, but facets may intersect. Cost: O(n log n).
 std::vector<CollapsedFeature> collapse_in_draft(facets::ComplexDraft& draft, const Plc& plc, double size,
                                                 const RepairOptions& options, Work& work);
 

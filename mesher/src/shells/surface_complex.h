@@ -35,8 +35,8 @@ class SurfaceComplex {
     Index curve = none;
     std::array<double, 2> at{};  ///< arc lengths of the ends on the curve, ascending; the second one may
                                  ///< exceed the curve's length
-    Index tip = none;            ///< if the edge is a tip, its end at a sharp corner, else none; all tips at
-                                 ///< that corner are equally long
+    Index tip = none;            ///< if the edge is a tip (`SharpCorners`): its end at the corner; else none;
+                                 ///< all tips at a corner are equally long
 
     bool alive() const { return ends[0] != none; }
     /// Return the other end, and the arc length of an end. Precondition: v is an end.

@@ -38,7 +38,7 @@ class Thickness {
   /// Scratch space of a thread.
   using Crossings = std::vector<TriangleHierarchy::Crossing>;
 
-  /// Casts a ray to the triangle's side 0 (behind) or 1 (in front).
+  /// Returns the ray from the triangle towards its side 0 (behind) or 1 (in front).
   Ray ray(Index triangle, unsigned side) const;
   /// Returns what this ray meets within a distance (`reach`).
   Opposites at(Index triangle, unsigned side, Crossings& crossings, double reach = INFINITY) const;
