@@ -201,7 +201,6 @@ class Contour {
   }
 
  private:
-
   void set_tolerance() {
     const double precision = known_ ? 1e-8 : 1e-5;  // relative to the face
     FaceMeasure largest{};

@@ -89,6 +89,25 @@ double Shape::wall_width(const Point& p, Index triangle, double widest) const {
   return std::max(width, 0.0);
 }
 
+Index Shape::region_at(const Point& p, Index nearest) const {
+  // Barycentric coordinates of points that are surely inside a triangle; heights of needles relative to
+  // sides.
+  constexpr double inside = 1e-6, needle = 1e-4;
+  if (nearest == none) return locator_.region_at(p);
+  const auto [a, b, c] = corners(nearest);
+  const Vector normal = cross(b - a, c - a);
+  const double squared = dot(normal, normal),
+               side = std::max({squared_distance(a, b), squared_distance(b, c), squared_distance(c, a)});
+  const auto is_left_of = [&](const Point& from, const Point& to) {
+    return dot(cross(to - from, p - from), normal) > inside * squared;
+  };
+  // The way to a nearest point inside a triangle meets no other triangle.
+  const bool is_inside =
+      squared > needle * needle * side * side && is_left_of(a, b) && is_left_of(b, c) && is_left_of(c, a);
+  return is_inside ? plc_.patches[plc_.triangles[nearest].patch].regions[dot(p - a, normal) > 0 ? 1 : 0]
+                   : locator_.region_at(p);
+}
+
 Shape::Border Shape::border_of(const Plc::Patch& patch) const {
   Border border;
   std::vector<std::array<Index, 3>> segments;

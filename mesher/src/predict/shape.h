@@ -41,9 +41,11 @@ class Shape {
   /// Returns the distance from a point on a triangle, across a region, to a facing triangle of the same
   /// patch or of a patch that shares no curve with it; at most `widest`.
   double wall_width(const Point& p, Index triangle, double widest) const;
-  double distance_to_surface(const Point& p) const { return tree_.nearest(p).distance; }
-  /// Returns the region at a point. Precondition: the point is not on the surface.
-  Index region_at(const Point& p) const { return locator_.region_at(p); }
+  /// Returns the nearest triangle and its distance. A `hint`, a triangle that is probably near, saves time.
+  DistanceTree::Nearest nearest(const Point& p, Index hint = none) const { return tree_.nearest(p, 0, hint); }
+  /// Returns the region at a point, which has this nearest triangle. Precondition: the point is not on the
+  /// surface.
+  Index region_at(const Point& p, Index nearest) const;
 
  private:
   /// The segments of a patch's curves.

@@ -71,6 +71,7 @@ class TetCounter::Counter {
     Point centre;
     double half;
     Index region = none;
+    Index nearest = none;  // the triangle nearest to the centre, or to that of the cube before its division
   };
 
   bool is_enough() const { return tets_ >= enough_; }
@@ -242,8 +243,10 @@ class TetCounter::Counter {
       cubes_.pop_front();
       const bool last = cubes_done_ + cubes_.size() >= most_cubes;
       const Point p = last ? place_in(cube, cubes_done_) : cube.centre;
-      const double radius = std::sqrt(3.0) * cube.half, depth = shape_.distance_to_surface(p);
-      if (cube.region == none && depth > (last ? 0 : radius)) cube.region = shape_.region_at(p);
+      const double radius = std::sqrt(3.0) * cube.half;
+      const auto [depth, nearest] = shape_.nearest(p, cube.nearest);
+      cube.nearest = nearest;
+      if (cube.region == none && depth > (last ? 0 : radius)) cube.region = shape_.region_at(p, nearest);
       if (cube.region == 0) continue;
       const double wished =
           cube.region == none ? sizing_.default_size(p) : sizing_.region_size(cube.region, p);
@@ -277,7 +280,8 @@ class TetCounter::Counter {
     const double h = 0.5 * cube.half;
     for (const double x : {-h, h})
       for (const double y : {-h, h})
-        for (const double z : {-h, h}) cubes.push_back({cube.centre + Vector{x, y, z}, h, cube.region});
+        for (const double z : {-h, h})
+          cubes.push_back({cube.centre + Vector{x, y, z}, h, cube.region, cube.nearest});
   }
 
   const Shape& shape_;
