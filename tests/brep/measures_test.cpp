@@ -5,11 +5,13 @@
 #include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepBuilderAPI_MakeWire.hxx>
+#include <BRepBuilderAPI_NurbsConvert.hxx>
 #include <BRepBuilderAPI_Transform.hxx>
 #include <BRepGProp.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCone.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
+#include <BRepPrimAPI_MakeHalfSpace.hxx>
 #include <BRepPrimAPI_MakePrism.hxx>
 #include <BRepPrimAPI_MakeRevol.hxx>
 #include <BRepPrimAPI_MakeSphere.hxx>
@@ -23,6 +25,7 @@
 #include <TopoDS_Face.hxx>
 #include <gp_Ax1.hxx>
 #include <gp_Ax2.hxx>
+#include <gp_Pln.hxx>
 #include <gp_Trsf.hxx>
 
 #include <algorithm>
@@ -127,7 +130,7 @@ TEST(CadMeasures, OfACapThatNoParameterLinesBound) {
   EXPECT_NEAR(areas[1], 30 * pi, 1e-9 * 30 * pi);
 }
 
-/// The areas of all faces and the volume by OpenCASCADE's integrals over faces.
+/// Returns the areas of all faces and the volume by OpenCASCADE's integrals over faces.
 std::pair<std::vector<double>, double> integrated(const TopoDS_Shape& shape) {
   constexpr double error = 1e-9;  // OpenCASCADE's estimate
   std::vector<double> areas;
@@ -142,30 +145,43 @@ std::pair<std::vector<double>, double> integrated(const TopoDS_Shape& shape) {
   return {areas, properties.Mass()};
 }
 
+/// Expects the areas and the volume of OpenCASCADE, with any tessellation.
+void expect_as_integrated(const TopoDS_Shape& shape, double error) {
+  const auto [areas, volume] = integrated(shape);
+  brep::CadModel model(shape, "part");
+  for (const double deflection : {0.05, 0.2}) {
+    model.tessellate({.deflection = deflection});
+    const brep::CadMeasures measures = model.measures();
+    const std::vector<double> found = exact(measures.areas);
+    ASSERT_EQ(found.size(), areas.size());
+    for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], areas[i], error * areas.back());
+    ASSERT_EQ(measures.volumes.size(), 1U);
+    EXPECT_NEAR(measures.volumes[0].value().exact, volume, error * volume);
+  }
+}
+
+TopoDS_Shape mirrored(const TopoDS_Shape& shape) {
+  gp_Trsf mirror;
+  mirror.SetMirror(gp_Ax2(gp_Pnt(3, 1, 0), gp_Dir(1, 1, 2)));
+  return BRepBuilderAPI_Transform(shape, mirror, true).Shape();
+}
+
 TEST(CadMeasures, OfCutPrimitivesAreThoseOfOpenCascade) {
   const gp_Ax2 tilted(gp_Pnt(0.5, 0.3, 1), gp_Dir(1, 2, 3));
   const TopoDS_Shape rod =
       BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(-4, -8, -11), gp_Dir(1, 2, 3)), 0.8, 30).Shape();
   const TopoDS_Shape tip = BRepPrimAPI_MakeCone(gp_Ax2(gp_Pnt(1, 0, -9), gp::DZ()), 2, 0, 20).Shape();
-  gp_Trsf mirrored;
-  mirrored.SetMirror(gp_Ax2(gp_Pnt(3, 1, 0), gp_Dir(1, 1, 2)));
   for (const TopoDS_Shape& whole :
        {BRepPrimAPI_MakeCone(tilted, 5, 2, 7).Shape(), BRepPrimAPI_MakeSphere(tilted, 5).Shape(),
         BRepPrimAPI_MakeTorus(tilted, 5, 2).Shape(), BRepPrimAPI_MakeTorus(tilted, 5, 2, 1.5).Shape(),
         BRepPrimAPI_MakeCylinder(tilted, 4, 6).Shape()})
     for (const TopoDS_Shape& tool : {rod, tip}) {
       const TopoDS_Shape cut = BRepAlgoAPI_Cut(whole, tool).Shape();
-      for (const TopoDS_Shape& shape : {cut, BRepBuilderAPI_Transform(cut, mirrored, true).Shape()}) {
-        const auto [areas, volume] = integrated(shape);
-        brep::CadModel model(shape, "part");
-        model.tessellate({.deflection = 0.05});
-        const brep::CadMeasures measures = model.measures();
-        const std::vector<double> found = exact(measures.areas);
-        ASSERT_EQ(found.size(), areas.size());
-        for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], areas[i], 1e-6 * areas.back());
-        ASSERT_EQ(measures.volumes.size(), 1U);
-        EXPECT_NEAR(measures.volumes[0].value().exact, volume, 1e-6 * volume);
-      }
+      expect_as_integrated(cut, 1e-6);
+      expect_as_integrated(mirrored(cut), 1e-6);
+      const TopoDS_Shape of_splines = BRepBuilderAPI_NurbsConvert(cut, true).Shape();
+      expect_as_integrated(of_splines, 1e-5);
+      expect_as_integrated(mirrored(of_splines), 1e-5);
     }
 }
 
@@ -196,6 +212,24 @@ TEST(CadMeasures, OfAWaveThatIsExtruded) {
   const double expected = thickness * pi * (radius * radius + height * height / 2);
   EXPECT_NEAR(exact_volume(BRepPrimAPI_MakePrism(face, gp_Vec(0, 0, thickness)).Shape()), expected,
               1e-5 * expected);
+}
+
+/// The volume under an oblique plane over a cell with point symmetry is the area times the height in its
+/// middle.
+TEST(CadMeasures, OfAWaveThatIsExtrudedAndCutObliquely) {
+  const int teeth = 6;
+  const double radius = 6, height = 0.3, middle = 4;
+  const TopoDS_Edge outline = spline_through(24 * teeth, true, [&](double t) {
+    const double a = 2 * pi * t, r = radius + height * std::sin(teeth * a);
+    return gp_Pnt(r * std::cos(a), r * std::sin(a), 0);
+  });
+  const TopoDS_Face face = BRepBuilderAPI_MakeFace(BRepBuilderAPI_MakeWire(outline).Wire(), true).Face();
+  const TopoDS_Shape prism = BRepPrimAPI_MakePrism(face, gp_Vec(0, 0, 3 * middle)).Shape();
+  const gp_Pln plane(gp_Pnt(0, 0, middle), gp_Dir(0.3, 0.1, 1));
+  const TopoDS_Shape above =
+      BRepPrimAPI_MakeHalfSpace(BRepBuilderAPI_MakeFace(plane).Face(), gp_Pnt(0, 0, 3 * middle)).Solid();
+  const double expected = middle * pi * (radius * radius + height * height / 2);
+  EXPECT_NEAR(exact_volume(BRepAlgoAPI_Cut(prism, above).Shape()), expected, 1e-5 * expected);
 }
 
 TEST(CadMeasures, OfAWaveThatIsRevolved) {

@@ -25,7 +25,7 @@ from judging import JUDGE, LONG, MOST_TETS, TIME_LIMIT, Failed, is_due, run, ver
 CORPUS = os.environ.get("COLLARMESH_CORPUS", "")
 RELATIVE_SIZE = 1 / 25 if LONG else 1 / 20
 COARSE_SIZE = 1 / 8
-DAYS = 1 if LONG else 3  # days until each file was meshed in every way
+DAYS = 1 if LONG else 3  # days until each file has been meshed in every way; a divisor of the judge's
 REPAIR_LIMIT = 20  # seconds
 # A known fault of the mesher, which the certificate finds unless the time is up before: after repair, a smooth patch
 # nearly touches itself.
@@ -90,8 +90,8 @@ def projected(report):
 
 def place_collars_up_front(program, path, expect, mesh, options, diagonal):
     """The alternative way to make collars keeps every guarantee, too; without coarsening, with a radius-edge
-    bound everywhere."""
-    if not expect.startswith("mesh:") or not is_due(f"{path.name} up front", DAYS):
+    bound everywhere. In turns by day: the days of the judge (`verdict`) and as many again."""
+    if not expect.startswith("mesh:") or not is_due(f"{mesh.name} 2", DAYS):
         return
     report = mesh.with_suffix(".json")
     way = ["--collar-creation", "up-front", "--coarsen", "off", "--improve", 0, "--report", report]
@@ -104,7 +104,7 @@ def place_collars_up_front(program, path, expect, mesh, options, diagonal):
 
 def ask_for_a_ratio(program, path, expect, mesh, diagonal):
     """When vertices move onto exact faces, no cell exceeds a requested ratio, with sizes as large as walls
-    are thick."""
+    are thick. In turns by day."""
     if not expect.startswith("CAD:") or not is_due(f"{path.name} ratio", DAYS):
         return
     asked = ["--size", diagonal * COARSE_SIZE, "--distance", diagonal * RELATIVE_DISTANCE, "--radius-edge", 2]

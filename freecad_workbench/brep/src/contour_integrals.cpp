@@ -37,12 +37,12 @@ FaceMeasure operator-(const FaceMeasure& a, const FaceMeasure& b) {
 }
 FaceMeasure operator*(double s, const FaceMeasure& a) { return {s * a.area, s * a.cone}; }
 
-bool is_below(const FaceMeasure& a, const FaceMeasure& limit) {
-  return std::fabs(a.area) <= limit.area && std::fabs(a.cone) <= limit.cone;
+bool is_above(const FaceMeasure& a, const FaceMeasure& limit) {
+  return std::fabs(a.area) > limit.area || std::fabs(a.cone) > limit.cone;
 }
 
-/// A rule of Kronrod and the rule of Gauss whose points it contains, in -1 to 1 (Piessens et al., QUADPACK,
-/// 1983). Points on the right side, the middle last; every second point is of Gauss.
+/// A rule of Kronrod (1965) and the rule of Gauss whose points it contains, in -1 to 1. Points on the right
+/// side, the middle last; every second point is of Gauss.
 template <std::size_t N>
 struct Rule {
   std::array<double, N> at, kronrod;
@@ -67,10 +67,11 @@ constexpr Rule<8> of_15_points{{0.991455371120812639206854697526329, 0.949107912
                                 0.381830050505118944950369775488975, 0.417959183673469387755102040816327}};
 
 /// Integrates from a to b. Halves the interval while the rules of Gauss and Kronrod differ by more than the
-/// tolerance, at most `halvings` times. The result is far more exact than the tolerance.
+/// tolerance, at most `halvings` times; if they still differ then, sets `converges` to false. The result of
+/// Kronrod's rule, which is returned, is far more exact than the difference.
 template <std::size_t N, class Function>
 FaceMeasure integrate(const Rule<N>& rule, const Function& f, double a, double b,
-                      const FaceMeasure& tolerance, unsigned halvings = 8) {
+                      const FaceMeasure& tolerance, bool& converges, unsigned halvings = 8) {
   const double middle = (a + b) / 2, half = (b - a) / 2;
   const FaceMeasure centre = f(middle);
   FaceMeasure fine = rule.kronrod.back() * centre, coarse = rule.gauss.back() * centre;
@@ -79,10 +80,14 @@ FaceMeasure integrate(const Rule<N>& rule, const Function& f, double a, double b
     fine = fine + rule.kronrod[i] * both;
     if (i % 2 == 1) coarse = coarse + rule.gauss[i / 2] * both;
   }
-  if (halvings == 0 || is_below(half * (fine - coarse), tolerance)) return half * fine;
+  if (!is_above(half * (fine - coarse), tolerance)) return half * fine;
+  if (halvings == 0) {
+    converges = false;
+    return half * fine;
+  }
   const FaceMeasure each = 0.5 * tolerance;
-  return integrate(rule, f, a, middle, each, halvings - 1) +
-         integrate(rule, f, middle, b, each, halvings - 1);
+  return integrate(rule, f, a, middle, each, converges, halvings - 1) +
+         integrate(rule, f, middle, b, each, converges, halvings - 1);
 }
 
 /// The place of the apex in the axes of a surface.
@@ -166,6 +171,17 @@ std::vector<double> ends_of_spans(Shape& shape, const Count& count, const Get& g
   return {ends.begin(), ends.end()};
 }
 
+/// Repeats the ends of spans by whole periods, so that they cover an interval.
+void repeat(std::vector<double>& ends, double period, double low, double high) {
+  const std::vector<double> once = ends;
+  const double from = std::floor((low - once.front()) / period),
+               to = std::ceil((high - once.back()) / period);
+  for (double k = from; k <= to; ++k)
+    for (const double end : once)
+      if (k != 0) ends.push_back(end + k * period);
+  std::sort(ends.begin(), ends.end());
+}
+
 /// The integrals over one face.
 class Contour {
  public:
@@ -173,18 +189,13 @@ class Contour {
       : face_(face), apex_(apex), surface_(face, false), known_(known_antiderivative(surface_, apex)) {
     BRepTools::UVBounds(face, u_low_, u_high_, v_low_, v_high_);
     if (!known_) {
-      u_spans_ =
-          ends_of_spans(surface_, &BRepAdaptor_Surface::NbUIntervals, &BRepAdaptor_Surface::UIntervals);
-      v_spans_ =
-          ends_of_spans(surface_, &BRepAdaptor_Surface::NbVIntervals, &BRepAdaptor_Surface::VIntervals);
+      find_spans();
       inner_is_v_ = v_spans_.size() > u_spans_.size();
     }
     set_tolerance();
   }
 
-  std::optional<FaceMeasure> measure() const {
-    constexpr std::size_t many = 10'000;  // with so many spans this would take long
-    if (u_spans_.size() * v_spans_.size() > many) return {};
+  std::optional<FaceMeasure> measure() {
     FaceMeasure sum;
     for (TopExp_Explorer edges(face_, TopAbs_EDGE); edges.More(); edges.Next()) {
       const TopoDS_Edge& edge = TopoDS::Edge(edges.Current());
@@ -192,32 +203,50 @@ class Contour {
       double from = 0, to = 0;
       const Handle(Geom2d_Curve) curve = BRep_Tool::CurveOnSurface(edge, face_, from, to);
       if (curve.IsNull()) return {};
-      Geom2dAdaptor_Curve adaptor(curve, from, to);
+      Geom2dAdaptor_Curve adaptor(curve, std::min(from, to), std::max(from, to));
       const FaceMeasure part = along(adaptor);
+      if (!converges_) return {};
       sum = edge.Orientation() == TopAbs_FORWARD ? sum + part : sum - part;
     }
-    if (!(sum.area > 0)) return {};
+    if (!(sum.area > 0) || !std::isfinite(sum.area) || !std::isfinite(sum.cone)) return {};
     return sum;
   }
 
  private:
+  void find_spans() {
+    u_spans_ = ends_of_spans(surface_, &BRepAdaptor_Surface::NbUIntervals, &BRepAdaptor_Surface::UIntervals);
+    v_spans_ = ends_of_spans(surface_, &BRepAdaptor_Surface::NbVIntervals, &BRepAdaptor_Surface::VIntervals);
+    if (surface_.IsUPeriodic()) repeat(u_spans_, surface_.UPeriod(), u_low_, u_high_);
+    if (surface_.IsVPeriodic()) repeat(v_spans_, surface_.VPeriod(), v_low_, v_high_);
+  }
+
+  /// Sets tolerances relative to the face. The scale of the cone does not vanish for faces in a plane through
+  /// the apex, where only rounding errors are left.
   void set_tolerance() {
-    const double precision = known_ ? 1e-8 : 1e-5;  // relative to the face
+    const double precision = known_ ? 1e-8 : 1e-5;
     FaceMeasure largest{};
-    constexpr int samples = 4;
-    for (int i = 0; i <= samples; ++i)
-      for (int j = 0; j <= samples; ++j) {
-        const FaceMeasure here =
-            element(u_low_ + (u_high_ - u_low_) * i / samples, v_low_ + (v_high_ - v_low_) * j / samples);
-        largest = {std::max(largest.area, here.area), std::max(largest.cone, std::fabs(here.cone))};
+    constexpr int samples = 5;
+    for (int i = 0; i < samples; ++i)
+      for (int j = 0; j < samples; ++j) {
+        const double u = u_low_ + (u_high_ - u_low_) * (i + 0.5) / samples,
+                     v = v_low_ + (v_high_ - v_low_) * (j + 0.5) / samples;
+        const double area = element(u, v).area;
+        largest = {std::max(largest.area, area),
+                   std::max(largest.cone, area * apex_.Distance(surface_.Value(u, v)) / 3)};
       }
     const double inner = inner_is_v_ ? v_high_ - v_low_ : u_high_ - u_low_;
     const double outer = inner_is_v_ ? u_high_ - u_low_ : v_high_ - v_low_;
     inner_tolerance_ = precision * inner * largest;
     outer_tolerance_ = outer * inner_tolerance_;
+    slowest_ = 1e-13 * outer;
   }
 
-  FaceMeasure element(double u, double v) const {
+  FaceMeasure element(double u, double v) {
+    if (evaluations_left_ == 0) {
+      converges_ = false;
+      return {};
+    }
+    --evaluations_left_;
     gp_Pnt at;
     gp_Vec du, dv;
     surface_.D1(u, v, at, du, dv);
@@ -226,7 +255,7 @@ class Contour {
   }
 
   /// Integrates along u or v from the least value on the face.
-  FaceMeasure inner_integral(double u, double v) const {
+  FaceMeasure inner_integral(double u, double v) {
     if (known_) return known_(u, v) - known_(u_low_, v);
     const double to = inner_is_v_ ? v : u;
     double from = inner_is_v_ ? v_low_ : u_low_;
@@ -235,29 +264,30 @@ class Contour {
     for (const double end : inner_is_v_ ? v_spans_ : u_spans_) {
       const double until = std::min(end, to);
       if (until <= from) continue;
-      sum = sum + integrate(of_7_points, f, from, until, inner_tolerance_);
+      sum = sum + integrate(of_7_points, f, from, until, inner_tolerance_, converges_);
       from = until;
     }
-    if (from != to) sum = sum + integrate(of_7_points, f, from, to, inner_tolerance_);
+    if (from != to) sum = sum + integrate(of_7_points, f, from, to, inner_tolerance_, converges_);
     return sum;
   }
 
   /// Returns the integral of the inner integral along a curve of the parameters.
-  FaceMeasure along(Geom2dAdaptor_Curve& curve) const {
+  FaceMeasure along(Geom2dAdaptor_Curve& curve) {
     std::vector<double> ends =
         ends_of_spans(curve, &Geom2dAdaptor_Curve::NbIntervals, &Geom2dAdaptor_Curve::Intervals);
     if (curve.GetType() == GeomAbs_Line) divide_at_spans(curve.Line(), ends);
+    const double slowest = slowest_ / (ends.back() - ends.front());
     const auto f = [&](double t) {
       gp_Pnt2d at;
       gp_Vec2d tangent;
       curve.D1(t, at, tangent);
       const double speed = inner_is_v_ ? -tangent.X() : tangent.Y();
-      return speed == 0 ? FaceMeasure{} : speed * inner_integral(at.X(), at.Y());
+      return std::fabs(speed) <= slowest ? FaceMeasure{} : speed * inner_integral(at.X(), at.Y());
     };
     FaceMeasure sum;
     for (std::size_t i = 0; i + 1 < ends.size(); ++i)
-      sum = sum + (known_ ? integrate(of_15_points, f, ends[i], ends[i + 1], outer_tolerance_)
-                          : integrate(of_7_points, f, ends[i], ends[i + 1], outer_tolerance_));
+      sum = sum + (known_ ? integrate(of_15_points, f, ends[i], ends[i + 1], outer_tolerance_, converges_)
+                          : integrate(of_7_points, f, ends[i], ends[i + 1], outer_tolerance_, converges_));
     return sum;
   }
 
@@ -280,6 +310,9 @@ class Contour {
   std::vector<double> u_spans_, v_spans_;
   bool inner_is_v_ = false;
   FaceMeasure inner_tolerance_, outer_tolerance_;
+  double slowest_ = 0;  // a curve that goes no farther than this in the outer direction adds nothing
+  std::size_t evaluations_left_ = 2'000'000;  // with more of them, OpenCASCADE's integrals take no longer
+  bool converges_ = true;
 };
 
 }  // namespace

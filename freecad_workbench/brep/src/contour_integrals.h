@@ -16,8 +16,8 @@ struct FaceMeasure {
 /// Measures a face by Green's theorem: the integrals over the face become integrals along its edges in the
 /// parameters of its surface. For planes, cylinders, cones, spheres and tori the first of the two integrals
 /// is known; for other surfaces it is computed span by span. The face's own orientation does not count: its
-/// normals are those of its surface. Returns nothing for a face without edges or with edges that have no
-/// curve on the surface.
+/// normals are those of its surface. Returns nothing if the face has no edges, an edge has no curve on the
+/// surface, or the integrals do not converge within a limit on their cost.
 std::optional<FaceMeasure> integrate_along_edges(const TopoDS_Face& face, const gp_Pnt& apex);
 
 }  // namespace collarmesh::brep

@@ -1,10 +1,13 @@
 #include "face_integrals.h"
 
+#include <BRepAdaptor_Surface.hxx>
+#include <BRepBuilderAPI_NurbsConvert.hxx>
 #include <BRepGProp_Domain.hxx>
 #include <BRepGProp_Face.hxx>
 #include <BRepGProp_Sinert.hxx>
 #include <BRepGProp_Vinert.hxx>
 #include <Standard_Failure.hxx>
+#include <Standard_OutOfMemory.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Face.hxx>
 
@@ -13,6 +16,20 @@
 #include "topology.h"
 
 namespace collarmesh::brep {
+
+namespace {
+
+/// Returns the face as a spline surface if it is an extruded or revolved spline curve. OpenCASCADE does not
+/// know the spans of such surfaces, and adaptive integrals then miss waves.
+TopoDS_Face with_known_spans(const TopoDS_Face& face) {
+  const BRepAdaptor_Surface surface(face, false);
+  const bool is_swept =
+      surface.GetType() == GeomAbs_SurfaceOfExtrusion || surface.GetType() == GeomAbs_SurfaceOfRevolution;
+  if (!is_swept || surface.BasisCurve()->GetType() != GeomAbs_BSplineCurve) return face;
+  return TopoDS::Face(BRepBuilderAPI_NurbsConvert(face, true).Shape());
+}
+
+}  // namespace
 
 FaceIntegrals::FaceIntegrals(const TopoDS_Shape& shape) {
   const Point centre = place_of(shape);
@@ -29,7 +46,14 @@ FaceMeasure FaceIntegrals::measure(const TopoDS_Shape& face) const {
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   try {
     if (const auto measured = integrate_along_edges(TopoDS::Face(face), apex_)) return *measured;
+  } catch (const Standard_OutOfMemory&) {
+    throw;
+  } catch (const Standard_Failure&) {  // other integrals may succeed
+  }
+  try {
     return {integrated<BRepGProp_Sinert>(face), integrated<BRepGProp_Vinert>(face)};
+  } catch (const Standard_OutOfMemory&) {
+    throw;
   } catch (const Standard_Failure&) {
     return {unknown, unknown};
   }
@@ -39,7 +63,7 @@ FaceMeasure FaceIntegrals::measure(const TopoDS_Shape& face) const {
 /// exact than fixed ones, which have too few points for splines of many spans.
 template <class Integral>
 double FaceIntegrals::integrated(const TopoDS_Shape& face) const {
-  const TopoDS_Face forward = TopoDS::Face(face.Oriented(TopAbs_FORWARD));
+  const TopoDS_Face forward = with_known_spans(TopoDS::Face(face.Oriented(TopAbs_FORWARD)));
   BRepGProp_Face surface(forward);
   BRepGProp_Domain domain(forward);
   const int spans = surface.SUIntSubs() * surface.SVIntSubs();

@@ -93,6 +93,9 @@ class VertexCounter {
     const double tets = tets_->count_up_to(enough);
     most_ = static_cast<double>(few) + tets;
     is_known_ = tets < enough;
+    if (!is_known_) return;
+    tets_.reset();
+    shape_.reset();
   }
 
   // Returns whether thin places may take more vertices than the sizes ask for. This costs far more than the

@@ -43,8 +43,8 @@ class Shape {
   double wall_width(const Point& p, Index triangle, double widest) const;
   /// Returns the nearest triangle and its distance. A `hint`, a triangle that is probably near, saves time.
   DistanceTree::Nearest nearest(const Point& p, Index hint = none) const { return tree_.nearest(p, 0, hint); }
-  /// Returns the region at a point, which has this nearest triangle. Precondition: the point is not on the
-  /// surface.
+  /// Returns the region at a point. `nearest`: the triangle nearest to it. Precondition: the point is not on
+  /// the surface.
   Index region_at(const Point& p, Index nearest) const;
 
  private:

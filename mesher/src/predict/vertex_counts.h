@@ -38,9 +38,8 @@ inline Model model_of_refinement() {
   return model;
 }
 
-/// Predicts the number of tets from the number of vertices and the share of directions around each that lead
-/// into regions. Infinite if a double cannot hold it. Cost: grows with the mesh, up to a bound that is linear
-/// in the complex.
+/// A counter that predicts the number of tets from the number of vertices and the share of directions around
+/// each that lead into regions. Cost: grows with the mesh, up to a bound that is linear in the complex.
 class TetCounter {
  public:
   /// Keeps references to the shape and to the options.
@@ -49,7 +48,7 @@ class TetCounter {
   TetCounter(const TetCounter&) = delete;
   TetCounter& operator=(const TetCounter&) = delete;
   /// Goes on where the last call ended. Stops as soon as it has counted `enough` tets, which is all that many
-  /// callers need. Returns the number so far.
+  /// callers need. Returns the number so far; infinite if a double cannot hold it.
   double count_up_to(double enough);
 
  private:

@@ -114,7 +114,8 @@ class CadModel {
   virtual double distance_to(const Point& where) const;
 
   /// Returns lengths, areas and volumes, by integrals over the exact edges and faces; seams have none.
-  /// Precondition: tessellated. Cost: a small part of reading the shape.
+  /// Precondition: tessellated. The first call integrates over all faces, which costs a small part of reading
+  /// the shape, and keeps the results. Not for several threads at once.
   virtual CadMeasures measures() const;
 
   /// Returns text on the first few sub-shapes that OpenCASCADE's own check finds invalid, with places; empty
