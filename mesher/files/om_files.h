@@ -11,8 +11,8 @@ namespace collarmesh::files {
 /// OpenMesh.
 bool is_om(const std::string& path, std::string_view format);
 
-/// Call openmesh_io::read_om and write_om. OpenMesh is in a module, so that only runs with such files load
-/// it. Throw ReadError and WriteError, also if the module is missing.
+/// Call openmesh_io::read_om and write_om, which are in a module with OpenMesh. It is loaded only when such a
+/// file is read or written. Throw ReadError and WriteError, also if the module is missing.
 PolygonSoup read_om(const std::string& path);
 void write_om(const std::string& path, const PolygonSoup& soup);
 

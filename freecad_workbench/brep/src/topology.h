@@ -55,8 +55,8 @@ struct Topology {
 
 inline bool is_edge(const TopoDS_Shape& part) { return part.ShapeType() == TopAbs_EDGE; }
 
-/// Finds the solids of a shape. Sews faces if there is no solid or one is open, and makes solids that touch
-/// share faces. A shape of edges alone keeps these as free parts. Throws PlcError for a shape without faces
+/// Finds the solids of a shape. Sews faces if there is no solid or one is open. Then gives touching solids
+/// common faces. A shape of edges alone keeps these as free parts. Throws PlcError for a shape without faces
 /// and edges.
 Topology find_topology(const TopoDS_Shape& shape, const std::string& file, const CadOptions& options);
 

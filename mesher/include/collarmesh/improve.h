@@ -51,11 +51,11 @@ struct ImproveReport {
 /// and collapses edges whatever the new lengths.
 /// For the few tets that no operation improves, tries an operation that makes tets worse and improves its
 /// result; undoes both unless the tets are better afterwards, compared from the worst one up. Apart from
-/// these trials, no operation makes the worst tet of its cavity worse. No operation at all makes a tet exceed
-/// the radius-edge bound if it may not be thin, touches a collar, leaves the plane of a planar patch, or puts
-/// faces or edges farther from their smooth patch or curve than `bounds` allow. Preconditions: `mesh` comes
-/// from `generate` for `plc`, first order, with the same `Bounds::distance`. Cost: linear in the tets; poor
-/// tets cost little if they can reach `min_dihedral`.
+/// these trials, no operation makes the worst tet of its cavity worse. No operation at all touches a collar,
+/// leaves the plane of a planar patch, puts faces or edges farther from their smooth patch or curve than
+/// `bounds` allow, or makes a tet that may not be thin exceed the radius-edge bound. Preconditions: `mesh`
+/// comes from `generate` for `plc`, first order, with the same `Bounds::distance`. Cost: linear in the tets;
+/// poor tets cost little if they can reach `min_dihedral`.
 ImproveReport improve(TetMesh& mesh, const Plc& plc, const ImproveOptions& options = {},
                       const Execution& execution = {});
 

@@ -27,8 +27,8 @@ std::size_t divide_curves_at_poor_tets(EditableMesh& edited, const Bounds& bound
 /// Cells of collars become ordinary tets. Precondition: the mesh has `features`.
 void insert_interior_nodes(EditableMesh& edited, const Bounds& bounds, InteriorNodesReport& report);
 
-/// Gives each tet of a finished mesh a corner inside a region, so that all tets are within the bounds
-/// afterwards. A tet stays if that cannot be reached (see `replace_tets`).
+/// Replaces each tet of a finished mesh that lacks a corner inside a region by tets that have one and are
+/// within the bounds. The tet stays if this fails (see `replace_tets`).
 void complete_interior_nodes(EditableMesh& edited, const Bounds& bounds, InteriorNodesReport& report);
 
 }  // namespace remeshing::improvement

@@ -9,9 +9,9 @@
 
 namespace collarmesh::periodicity {
 
-// Makes the cavity of all tets at a simplex, whose vertices `is_of` accepts. Sides that contain the simplex
-// are removed, with the faces on them. The edges opposite the simplex in these faces form the rim; the sides
-// opposite its vertices form the hull.
+// Makes the cavity of all tets at a simplex (a vertex, an edge or a face), whose vertices `is_of` accepts.
+// Sides that contain the simplex are removed, with the faces on them. The edges of these faces opposite a
+// vertex of the simplex form the rim; the sides of the tets opposite such a vertex form the hull.
 template <class IsOf>
 Cavity CavityEditor::cavity_of(std::vector<Index> tets, const IsOf& is_of) const {
   Cavity cavity;
