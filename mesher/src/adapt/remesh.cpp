@@ -54,8 +54,8 @@ constexpr double no_ratio = 0.1;
 // `angle_reserve` is the share of the bounds on angles that is kept in reserve for these moves.
 constexpr double distance_left = 0.75, angle_reserve = 0.05;
 constexpr unsigned most_rounds_of_poor = 4;
-// The whole mesh is brought to its size first if more than the share `mostly` of its tets misses the bounds on
-// angles, and more than the share `least_beyond` misses even the bounds as lowered where the input forces
+// The whole mesh is brought to its size first if more than the share `mostly` of its tets misses the bounds
+// on angles, and more than the share `least_beyond` misses even the bounds as lowered where the input forces
 // edges to be short (ForcedEdges).
 constexpr double mostly = 0.1, least_beyond = 0.02;
 // If the smallest angle of a mesh, away from creases and narrow places, is at least this (degrees),
