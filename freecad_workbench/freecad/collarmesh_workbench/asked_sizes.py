@@ -147,8 +147,9 @@ def _to_points(places, points):
 
 
 def _of_curvature(surface, shape, count):
-    """Returns for each corner of the surface the size for `count` elements on a full circle; inf on planes. The circle's
-    radius is the smallest radius of curvature at the sample of the corner's face that is nearest to the corner."""
+    """Returns for each corner of the surface the size for `count` elements on a full circle; inf on planes. The
+    circle's radius is the smallest radius of curvature at the sample of the corner's face that is nearest to the
+    corner."""
     sizes = numpy.full(len(surface.places), numpy.inf)
     for number, face in enumerate(shape.Faces, 1):
         if type(face.Surface).__name__ == "Plane":

@@ -64,8 +64,8 @@ class DimensionSection(QtGui.QWidget):
 
 
 def missing_section(mesh_object, dimension):
-    """Returns text on the cross section (dimension 1) or thickness (2) that FEM needs for elements of this dimension, if
-    the analysis lacks it; "" if nothing is missing."""
+    """Returns text on the cross section (dimension 1) or thickness (2) that FEM needs for elements of this dimension,
+    if the analysis lacks it; "" if nothing is missing."""
     analysis = analysis_of(mesh_object)
     members = [] if analysis is None else analysis.Group
     if dimension == 3 or any(type_of(each) == f"Fem::ElementGeometry{dimension}D" for each in members):
