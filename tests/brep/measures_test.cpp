@@ -201,35 +201,40 @@ double exact_volume(const TopoDS_Shape& shape) {
   return model.measures().volumes.at(0).value().exact;
 }
 
+/// A disk with a wavy outline.
+struct WavyDisk {
+  int teeth;
+  double radius = 6, height = 0.3;
+
+  double area() const { return pi * (radius * radius + height * height / 2); }
+  TopoDS_Shape extruded(double thickness) const {
+    const TopoDS_Edge outline = spline_through(24 * teeth, true, [&](double t) {
+      const double a = 2 * pi * t, r = radius + height * std::sin(teeth * a);
+      return gp_Pnt(r * std::cos(a), r * std::sin(a), 0);
+    });
+    const TopoDS_Face face = BRepBuilderAPI_MakeFace(BRepBuilderAPI_MakeWire(outline).Wire(), true).Face();
+    return BRepPrimAPI_MakePrism(face, gp_Vec(0, 0, thickness)).Shape();
+  }
+};
+
 TEST(CadMeasures, OfAWaveThatIsExtruded) {
-  const int teeth = 20;
-  const double radius = 6, height = 0.3, thickness = 2;
-  const TopoDS_Edge outline = spline_through(24 * teeth, true, [&](double t) {
-    const double a = 2 * pi * t, r = radius + height * std::sin(teeth * a);
-    return gp_Pnt(r * std::cos(a), r * std::sin(a), 0);
-  });
-  const TopoDS_Face face = BRepBuilderAPI_MakeFace(BRepBuilderAPI_MakeWire(outline).Wire(), true).Face();
-  const double expected = thickness * pi * (radius * radius + height * height / 2);
-  EXPECT_NEAR(exact_volume(BRepPrimAPI_MakePrism(face, gp_Vec(0, 0, thickness)).Shape()), expected,
-              1e-5 * expected);
+  constexpr double thickness = 2;
+  const WavyDisk disk{.teeth = 20};
+  const double expected = thickness * disk.area();
+  EXPECT_NEAR(exact_volume(disk.extruded(thickness)), expected, 1e-5 * expected);
 }
 
-/// The volume under an oblique plane over a cell with point symmetry is the area times the height in its
-/// middle.
+/// The volume below an oblique plane is the area times the plane's height above the centre, as the disk is
+/// symmetric about its centre.
 TEST(CadMeasures, OfAWaveThatIsExtrudedAndCutObliquely) {
-  const int teeth = 6;
-  const double radius = 6, height = 0.3, middle = 4;
-  const TopoDS_Edge outline = spline_through(24 * teeth, true, [&](double t) {
-    const double a = 2 * pi * t, r = radius + height * std::sin(teeth * a);
-    return gp_Pnt(r * std::cos(a), r * std::sin(a), 0);
-  });
-  const TopoDS_Face face = BRepBuilderAPI_MakeFace(BRepBuilderAPI_MakeWire(outline).Wire(), true).Face();
-  const TopoDS_Shape prism = BRepPrimAPI_MakePrism(face, gp_Vec(0, 0, 3 * middle)).Shape();
+  constexpr double middle = 4;
+  const WavyDisk disk{.teeth = 6};
   const gp_Pln plane(gp_Pnt(0, 0, middle), gp_Dir(0.3, 0.1, 1));
   const TopoDS_Shape above =
       BRepPrimAPI_MakeHalfSpace(BRepBuilderAPI_MakeFace(plane).Face(), gp_Pnt(0, 0, 3 * middle)).Solid();
-  const double expected = middle * pi * (radius * radius + height * height / 2);
-  EXPECT_NEAR(exact_volume(BRepAlgoAPI_Cut(prism, above).Shape()), expected, 1e-5 * expected);
+  const double expected = middle * disk.area();
+  EXPECT_NEAR(exact_volume(BRepAlgoAPI_Cut(disk.extruded(3 * middle), above).Shape()), expected,
+              1e-5 * expected);
 }
 
 TEST(CadMeasures, OfAWaveThatIsRevolved) {

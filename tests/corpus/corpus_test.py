@@ -90,9 +90,10 @@ def projected(report):
 
 def place_collars_up_front(program, path, expect, mesh, options, diagonal):
     """The alternative way to make collars keeps every guarantee, too; without coarsening, with a radius-edge
-    bound everywhere. In turns by day: the days of the judge (`verdict`) and as many again."""
+    bound everywhere. In turns by day: the days of the judge (`verdict`) and as many again. Returns ", up front" if it was
+    done."""
     if not expect.startswith("mesh:") or not is_due(f"{mesh.name} 2", DAYS):
-        return
+        return ""
     report = mesh.with_suffix(".json")
     way = ["--collar-creation", "up-front", "--coarsen", "off", "--improve", 0, "--report", report]
     result = run(program, path, "-o", mesh, *options, *way)
@@ -100,17 +101,19 @@ def place_collars_up_front(program, path, expect, mesh, options, diagonal):
         raise Failed(f"collars up front: exit code {result.returncode}: {(result.stderr.splitlines() or [''])[0]}")
     if json.loads(report.read_text())["mesh"]["tets"] <= MOST_TETS:
         judge(path, expect, mesh, diagonal, radius_edge=2)
+    return ", up front"
 
 
 def ask_for_a_ratio(program, path, expect, mesh, diagonal):
     """When vertices move onto exact faces, no cell exceeds a requested ratio, with sizes as large as walls
-    are thick. In turns by day."""
+    are thick. In turns by day. Returns ", with a ratio" if it was done."""
     if not expect.startswith("CAD:") or not is_due(f"{path.name} ratio", DAYS):
-        return
+        return ""
     asked = ["--size", diagonal * COARSE_SIZE, "--distance", diagonal * RELATIVE_DISTANCE, "--radius-edge", 2]
     result = run(program, path, "-o", mesh, *asked, "--time-limit", TIME_LIMIT)
     if result.returncode != 0:
         raise Failed(f"a ratio of 2: exit code {result.returncode}: {(result.stderr.splitlines() or [''])[0]}")
+    return ", with a ratio"
 
 
 def mesh_one(program, path, expect, folder):
@@ -128,9 +131,9 @@ def mesh_one(program, path, expect, folder):
     if result.returncode == 0:
         found = json.loads(report.read_text())
         judged = judge(path, expect, mesh, diagonal)
-        place_collars_up_front(program, path, expect, mesh, [*size, *exact], diagonal)
-        ask_for_a_ratio(program, path, expect, mesh, diagonal)
-        return f"{found['mesh']['tets']} tets in {found['seconds']['refine']:.2f} s{judged}{projected(found)}"
+        ways = place_collars_up_front(program, path, expect, mesh, [*size, *exact], diagonal)
+        ways += ask_for_a_ratio(program, path, expect, mesh, diagonal)
+        return f"{found['mesh']['tets']} tets in {found['seconds']['refine']:.2f} s{judged}{ways}{projected(found)}"
     if mesh.exists():
         raise Failed(f"a mesh was written in spite of exit code {result.returncode}")
     if not COORDINATES.search(result.stderr):
