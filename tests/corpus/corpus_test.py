@@ -90,8 +90,8 @@ def projected(report):
 
 def place_collars_up_front(program, path, expect, mesh, options, diagonal):
     """The alternative way to make collars keeps every guarantee, too; without coarsening, with a radius-edge
-    bound everywhere. In turns by day: the days of the judge (`verdict`) and as many again. Returns ", up front" if it was
-    done."""
+    bound everywhere. In turns by day: the days of the judge (`verdict`) and as many again. Returns ", up front" if
+    it was done."""
     if not expect.startswith("mesh:") or not is_due(f"{mesh.name} 2", DAYS):
         return ""
     report = mesh.with_suffix(".json")
