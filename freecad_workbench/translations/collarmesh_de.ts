@@ -1275,7 +1275,7 @@
       <translation>{count} Löcher der Form sind gefüllt, das größte mit {area} mm²; die Liste sagt, wo.</translation>
     </message>
     <message>
-      <source>{edge} at {place} is only {length} mm long, the mesh becomes very fine there: remove the edge if it is not meant (Part: Defeaturing)</source>
+      <source>{edge} at {place} is only {length} mm long, so the mesh becomes very fine there: remove the edge if it is not meant (Part: Defeaturing)</source>
       <translation>{edge} bei {place} ist nur {length} mm lang, dort wird das Netz sehr fein: entfernen Sie die Kante, wenn sie nicht gewollt ist (Part: Formmerkmal entfernen)</translation>
     </message>
     <message>

@@ -381,7 +381,7 @@ def print_doubts(rows: list[Row]) -> None:
     for row in rows:
         doubts = ["farther off than told"] if row.silent else []
         if row.changed:
-            doubts.append(f"{len(row.changed)} bodies or voids otherwise, at " +
+            doubts.append(f"{len(row.changed)} bodies or voids changed, at " +
                           "; ".join("(" + ", ".join(f"{x:.6g}" for x in p) + ")" for p in row.changed[:3]))
         if row.differs > (0.01 if row.solids is None else 0.03):
             doubts.append(f"differs in {100 * row.differs:.1f}% of the volume")

@@ -17,7 +17,8 @@ def comparison_options(description: str, default_parts: list[str]) -> argparse.N
     root = Path(__file__).resolve().parents[2]
     parser.add_argument("--build", type=Path, default=root / "build" / "bench")
     parser.add_argument("--corpus", type=Path, default=os.environ.get("COLLARMESH_CORPUS"))
-    parser.add_argument("--parts", nargs="*", default=default_parts, help="files of the corpus; the box comes first")
+    parser.add_argument("--parts", nargs="*", default=default_parts,
+                        help="files of the corpus, which are meshed after the built-in box")
     parser.add_argument("--tets", type=int, default=40000)
     parser.add_argument("--time-limit", type=float, default=300, help="seconds for one run of one program")
     parser.add_argument("--core", type=int, help="the core to run on (default: the last one)")

@@ -37,8 +37,8 @@ struct ConvertArguments : MeshArguments {
                          ///< with a value other than none
 };
 
-/// The arguments of `collarmesh repair IN... -o OUT`; "-" as in ConvertArguments. There is at most one
-/// report.
+/// The arguments of `collarmesh repair IN... -o OUT`; "-" as in ConvertArguments. `reports` has at most one
+/// entry.
 struct RepairArguments : MeshArguments {
   bool json = false;
 };

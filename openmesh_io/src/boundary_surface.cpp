@@ -129,7 +129,8 @@ void order_by_neighbours(const std::vector<Index>& neighbour, SelectedSurface& s
   surface.face_regions = std::move(sorted.face_regions);
 }
 
-/// Finds every copy of an edge on a curve.
+/// Finds the sides of triangles that are curve edges of the mesh. An edge occurs several times if its points
+/// were copied or if several triangles share it.
 void find_curves(const TetMesh& mesh, SelectedSurface& surface) {
   std::map<std::pair<Index, Index>, Tag> tags;
   for (std::size_t e = 0; e < mesh.edges.size(); ++e)

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <set>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "collarmesh/error.h"
@@ -199,6 +200,25 @@ TEST(Pipeline, TheFirstMeshStaysWhereNoOtherIsBetter) {
   options.seeds = 5;
   expect_first(many.run(options));
   EXPECT_EQ(many.adapted, 8U);
+}
+
+// The time limit passes at the beginning of the second repair.
+TEST(Pipeline, TheFirstMeshStaysWhereTimeEndsDuringARepair) {
+  Boxes boxes;
+  PipelineOptions options = with_size(0.5);
+  options.mesh.time_limit = 5;
+  Execution execution;
+  std::size_t complexes = 0;
+  execution.progress = [&](const ProgressReport& report) {
+    if (report.begins && report.phase == "complex" && ++complexes == 2)
+      std::this_thread::sleep_for(std::chrono::duration<double>(options.mesh.time_limit + 0.1));
+    return true;
+  };
+  const SoupPipelineResult made = boxes.run(options, execution);
+  EXPECT_EQ(made.result.status, MeshStatus::complete) << made.result.message;
+  EXPECT_FALSE(made.result.mesh.tets.empty());
+  EXPECT_FALSE(made.guarantees_hold());
+  EXPECT_DOUBLE_EQ(boxes.built.back().tolerance, RepairOptions{}.tolerance);
 }
 
 TEST(Pipeline, IsCancelledBetweenRepairs) {

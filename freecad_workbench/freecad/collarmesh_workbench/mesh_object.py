@@ -85,7 +85,7 @@ def tiny_edges(shape, size):
         return []
     default = shape.BoundBox.DiagonalLength / 20
     size = min(size, 4 * default) or default
-    text = translate("collarmesh", "{edge} at {place} is only {length} mm long, the mesh becomes very fine there: "
+    text = translate("collarmesh", "{edge} at {place} is only {length} mm long, so the mesh becomes very fine there: "
                                    "remove the edge if it is not meant (Part: Defeaturing)")
     warnings = []
     for number, edge in enumerate(shape.Edges, 1):

@@ -185,7 +185,7 @@ def _told_in_report_view():
 
 
 def _tell(obj, outcome):
-    """Tells the user about the outcome if the panel is closed."""
+    """Shows in the status bar whether the mesh was made; needed if the panel is closed."""
     text = translate("collarmesh", "{object}: the mesh is made")
     if outcome.report is None:
         text = translate("collarmesh", "{object}: no new mesh is made")

@@ -23,8 +23,8 @@ struct PetscOutOfMemory : PetscFailure {
   using PetscFailure::PetscFailure;
 };
 
-/// A collector of PETSc's message about its first error, in one line. PETSc prints nothing during its
-/// lifetime.
+/// A collector of PETSc's message about its first error, in one line. While it exists, PETSc prints
+/// nothing.
 class PetscMessages {
  public:
   PetscMessages();

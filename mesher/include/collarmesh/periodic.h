@@ -26,8 +26,9 @@ struct PeriodicOptions {
   bool any() const { return !pairs.empty(); }
 };
 
-/// The result for one pair.
+/// The result for all pairs.
 struct PeriodicReport {
+  /// The result for one pair.
   struct Pair {
     std::string text;        ///< the pair as the option gives it
     std::size_t nodes = 0;   ///< nodes on the first group, including mid-edge nodes

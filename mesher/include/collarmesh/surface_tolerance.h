@@ -66,7 +66,7 @@ class SurfaceTolerance {
 /// is larger, because the curved elements follow the surface. Cost: near linear in the triangles.
 SurfaceTolerance default_tolerance(const Plc& plc, double size, int order = 1);
 
-/// Returns a tolerance by place: the largest one over all sizes and orders.
+/// Returns, by place, the largest default tolerance of all sizes and orders.
 SurfaceTolerance largest_default_tolerance(const Plc& plc);
 
 /// A patch whose triangles are too coarse.

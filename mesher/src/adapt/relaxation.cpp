@@ -203,7 +203,7 @@ void Relaxation::propose_improvement(Operations& operations, Index tet, double e
     if (means != Means::edges && change.is_none()) operations.move_vertex(v, change);
   for (const Index v : corners)
     if (means != Means::edges && change.is_none()) operations.move_to_face(v, change);
-  // A collapse replaces `change.read`.
+  // Noted now, because the collapses below overwrite `change.read`.
   for (const Index t : change.read)
     found.read.insert(found.read.end(), complex()[t].corners.begin(), complex()[t].corners.end());
   for (const Index v : corners)

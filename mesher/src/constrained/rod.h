@@ -49,9 +49,9 @@ class Rod {
   bool find_vertices_around();
   /// Changes the number of vertices in a ring. Returns whether it is not too large.
   bool set_in_ring(std::size_t vertices);
-  /// Finds how far apart rings are, after `find_vertices_around`: at most this many radii, and so near that
-  /// edges along a bent axis use at most this share of the tolerance. The number of steps from ring to ring
-  /// is a multiple of `times`.
+  /// Finds how far apart rings are: at most `most_radii` radii, and so near that edges along a bent axis use
+  /// at most `share_along` of the tolerance. The number of steps from ring to ring is a multiple of `times`.
+  /// Call it after `find_vertices_around`.
   void find_spacing(double most_radii = INFINITY, double share_along = 0.1, std::size_t times = 1);
   /// Finds the vertices of all rings. If a pattern around the rod looks the same after each of
   /// `parts_of_turn` parts of a turn (0: as many parts as a ring has vertices), the rings of a closed rod are

@@ -187,7 +187,8 @@ class SheathFilling {
     mesh_.tet_region.push_back(region);
     mesh_.tet_tag.push_back(rod_.plc().regions[region].tag);
   }
-  /// Adds a face whose normal points away from this region.
+  /// Adds a face. The normal of abc must point away from `region`; the corners are swapped if this region is
+  /// the face's second one.
   void add_face(Index a, Index b, Index c, Index patch, Index region) {
     const Plc::Patch& of = rod_.plc().patches[patch];
     std::array<Index, 2> regions = of.regions;

@@ -39,7 +39,8 @@ struct Shares {
   Matrix root = identity;
   std::map<std::size_t, Matrix> references;  ///< by pair
 
-  /// Returns the shares of a node's image or, if `backwards`, those of the node with this image.
+  /// Returns the shares of this node's image or, if `backwards`, those of the node whose image this node is.
+  /// `rows`: the rotation of this pair.
   Shares moved(const Matrix& rows, std::size_t pair, bool backwards) const {
     const Matrix by = backwards ? transposed(rows) : rows;
     Shares result{product(by, root), {}};

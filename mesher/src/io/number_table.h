@@ -17,7 +17,7 @@ class NumberTable {
   /// Adds a number. Call it in the order of the entities.
   void add(std::int64_t number) { numbers_.emplace_back(number, static_cast<Index>(numbers_.size())); }
 
-  /// Sorts the numbers after the last `add`. Returns a number that was given twice, if there is one.
+  /// Sorts the numbers; call it after the last `add`. Returns a number that was given twice, if there is one.
   std::optional<std::int64_t> sort() {
     if (!std::is_sorted(numbers_.begin(), numbers_.end())) std::sort(numbers_.begin(), numbers_.end());
     const auto twice = std::adjacent_find(numbers_.begin(), numbers_.end(),

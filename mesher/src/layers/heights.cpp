@@ -19,8 +19,8 @@ constexpr double share_of_edges = 0.1;
 // Cosines between a direction and a wall's normal. Below `flattest` there are no layers. A node moves by the
 // height divided by the cosine or, if the cosine is below `flat`, divided by `flat`.
 constexpr double flattest = 0.1, flat = 0.4;
-// Shares of a gap that a stack (the layers above a place of the wall) may take if there is a stack on the
-// other side of the gap, too, and if there is none.
+// The share of a gap that a stack (the layers above a place of the wall) may take: `of_shared_gap` if there
+// is another stack on the opposite side of the gap, else `of_gap`.
 constexpr double of_shared_gap = 0.3, of_gap = 0.5;
 // The least Jacobian in a stack, relative to the largest one.
 constexpr double least_jacobian_share = 0.15;

@@ -33,7 +33,7 @@ Features features_of(const std::vector<Index>& patches, const Plc& plc) {
   return of;
 }
 
-/// The distance of a point from its intended place.
+/// The largest distance of a point from its intended place, and where it is.
 struct Deviation {
   double distance = 0;
   Point where{};

@@ -62,8 +62,8 @@ class VertexCounter {
   }
 
  private:
-  // Parts without thin features mostly have fewer than `few` vertices plus one for each tet of the coarsened
-  // mesh.
+  // Without thin features, a refinement mostly makes fewer vertices than the sum of `few` and the number of
+  // tets of the coarsened mesh.
   static constexpr std::size_t few = 1500;
   static constexpr double largest = 1e15;
 

@@ -27,7 +27,8 @@ struct RodFilling {
 
   std::vector<Index> tets, faces;  ///< elements of the refined mesh that the cavity takes
   TetMesh gap;
-  /// By patch of the gap: a planar patch of the whole complex; none for a triangle of a wall or of the skin.
+  /// By patch of the gap's complex: the planar patch of the whole complex that it lies in; none for the
+  /// patches that consist of one triangle of a wall or of the skin.
   std::vector<Index> hosts;
   std::map<std::tuple<double, double, double>, Origin> origins;
 };

@@ -82,7 +82,8 @@ class Assembly {
       made_.collar_balls.push_back(ball);
     }
   }
-  /// Returns the number of a vertex of the refined mesh that stays.
+  /// Returns the number, in the made mesh, of a vertex that is kept from the refined mesh. Adds the vertex if
+  /// it is not there yet.
   Index kept(Index v) {
     if (number_[v] == none) {
       auto [dimension, feature] = mesh_.features[v];

@@ -146,7 +146,8 @@ void Tries::mesh_any_repaired(SoupPipelineResult& all) {
   if (has_mesh && made.guarantees_hold()) return;
   if (!built_last) {
     try {
-      build(current, all);  // so that the source built this complex last
+      // So that the source built this complex last. A time limit that ended a repair must not lose the mesh.
+      job_.control.run_without_time_limit([&] { build(current, all); });
     } catch (const PlcError&) {
       if (!has_mesh) throw;
       return;

@@ -163,8 +163,9 @@ void RestrictedSurface::label_created_cells(const ConflictZone& zone, Index vert
 // crossings.
 bool RestrictedSurface::crosses_as_before(FaceId outer, FaceId face, Index vertex, Workspace& w) const {
   const RestrictedTriangle& t = triangle(outer);
-  // If a dual edge lies in the plane of the complex's triangle, x may be any point of the edge; so the
-  // crossing is lost if the new vertex lies in the surface gap ball.
+  // If the new vertex lies in the surface gap ball, x is no longer on the dual edge. An edge that lies almost
+  // in the plane of the complex's triangle may still cross the triangle then, because x may be any point of
+  // such an edge; the face needs another x.
   if (t.several_sheets || squared_distance(mesh_.point(vertex), t.x) < t.squared_radius) return false;
   const int direction = nodes_.hierarchy().crossing(mesh_.circumcentre(cell_of(outer)),
                                                     mesh_.circumcentre(cell_of(face)), t.triangle);

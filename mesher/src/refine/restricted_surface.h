@@ -120,8 +120,8 @@ class RestrictedSurface {
 
   /// Reports a new ball: checks whether it contains the points `x` of this cell's triangles.
   void note_ball(Index cell, const CollarBall& ball);
-  /// Gives a flat cell at the boundary, with a triangle there, to the outside. Marks its unmarked faces and
-  /// unmarks its marked ones. Precondition: no vertex is inserted any more.
+  /// Gives a flat cell to the outside: marks its unmarked faces and unmarks its marked ones. Preconditions:
+  /// one of its faces is marked and lies on the outer boundary; no vertex is inserted afterwards.
   void give_outside(Index cell);
 
   std::size_t bytes() const { return labels_.bytes() + marks_.bytes() + records_.bytes(); }

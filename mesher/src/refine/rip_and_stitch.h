@@ -34,7 +34,7 @@ struct Stitched {
 /// Rip and stitch (paper, Procedure 5). `extract` drops the cells inside the collars, and this class makes
 /// the tets that replace them: each triangle of the collar surface makes a star tet with its ball's centre,
 /// each edge between triangles of consecutive balls a book tet with the two centres.
-/// State: the result of the loop's last call. SurfaceTopology and extraction read it.
+/// State: the result of the last `stitch`, which the loop calls. SurfaceTopology and `extract` read it.
 class RipAndStitch {
  public:
   /// Keeps all by reference.

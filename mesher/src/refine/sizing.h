@@ -13,9 +13,10 @@ namespace collarmesh {
 ///
 /// Callers are CurveChains::too_coarse, TriangleQuality::target_size and CellQuality::judge, to decide about
 /// splits; GradedSizes::cells_made, for the size at a new vertex; CollarCreator::target_size, for the radii
-/// of balls; coarsen/target_sizes.cpp and predict/vertex_counts.cpp, for the same sizes in other stages. A
-/// new kind of size must be added to each of them (doc/contributing.md); if it calls the user's code or is
-/// kept at vertices, BlockRefinement must not run rounds with it, as with `has_field`.
+/// of balls; coarsen/target_sizes.cpp, adapt/edge_division.cpp, shells/surface_sizes.* and
+/// predict/vertex_counts.cpp, for the same sizes in other stages. A new kind of size must be added to each of
+/// them (doc/contributing.md); if it calls the user's code or is kept at vertices, BlockRefinement must not
+/// run rounds with it, as with `has_field`.
 class Sizing {
  public:
   /// Target edge length per unit of a size given as a length; in meshes of other meshers the median edge is

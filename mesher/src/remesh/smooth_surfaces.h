@@ -41,9 +41,9 @@ class SmoothSurfaces {
   /// Returns the point of a smooth patch that is nearest to p. Searches within the distance `near` first,
   /// which is faster if the patch is that near.
   Nearest nearest(Index patch, const Point& p, double near = INFINITY) const;
-  /// Accepts faces beyond the tolerance from now on, for meshes that were not made within it. The faces may
-  /// be as far from the patch as the faces that they replace or, if the old faces are beyond the tolerance,
-  /// `ratio` times as far. 0: accepts none.
+  /// Accepts from now on new faces that miss the tolerance, for meshes that were not made within it: no
+  /// farther from the patch than the faces that they replace or, if those are beyond the tolerance
+  /// themselves, up to `ratio` times as far as those. 0: accepts none.
   void accept_distant(double ratio) { accepted_ratio_ = ratio; }
   /// Returns whether an edge is within the tolerance of a smooth patch, judged by samples.
   bool edge_is_near(Index patch, const Point& a, const Point& b) const {

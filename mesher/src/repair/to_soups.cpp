@@ -113,7 +113,8 @@ class SoupMaker {
     }
   }
 
-  /// Returns for each soup the tags of its vertices, if it has no facets; it may consist of points alone.
+  /// Returns, by soup, the tags of its vertices. The set is empty if the soup has facets; only a soup without
+  /// facets may consist of points alone.
   std::vector<std::set<Tag>> tags_of_single_points() const {
     std::vector<std::set<Tag>> tags(soups_.size());
     for (Index s = 0; s < soups_.size(); ++s)
