@@ -105,6 +105,11 @@ TEST(CadMeasures, OfAShell) {
                   {{}, {4 * pi * 4.9 * 4.9, 4 * pi * 25}, {4. / 3 * pi * (125 - std::pow(4.9, 3))}});
 }
 
+TEST(CadMeasures, OfASolidThatIsInsideOut) {
+  expect_measures(BRepPrimAPI_MakeCylinder(3, 7).Solid().Reversed(),
+                  {{6 * pi, 6 * pi}, {9 * pi, 9 * pi, 42 * pi}, {63 * pi}});
+}
+
 TEST(CadMeasures, OfWhatTwoCylindersHaveInCommon) {
   const TopoDS_Shape along_x = BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(-9, 0, 0), gp::DX()), 3, 18).Shape();
   const TopoDS_Shape along_z = BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(0, 0, -9), gp::DZ()), 3, 18).Shape();

@@ -1,16 +1,22 @@
 #include "collarmesh/brep/cad_model.h"
 
 #include <fmt/format.h>
+#include <BRepAdaptor_Surface.hxx>
 #include <BRepBndLib.hxx>
 #include <BRepBuilderAPI_Copy.hxx>
 #include <BRepCheck_Analyzer.hxx>
 #include <Bnd_Box.hxx>
 #include <Standard_OutOfMemory.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS.hxx>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <new>
+#include <utility>
+#include <vector>
 
 #include "measures.h"
 #include "parts.h"
@@ -34,10 +40,45 @@ auto on_shape(const std::string& name, const char* doing, const Work& work) {
   }
 }
 
+std::array<gp_Pnt, 2> corners_of(const Bnd_Box& box) { return {box.CornerMin(), box.CornerMax()}; }
+
+bool contains(const Bnd_Box& outer, const Bnd_Box& inner) {
+  if (outer.IsVoid() || inner.IsVoid()) return inner.IsVoid();
+  const auto [low, high] = corners_of(outer);
+  const auto [inner_low, inner_high] = corners_of(inner);
+  for (int axis = 1; axis <= 3; ++axis)
+    if (inner_low.Coord(axis) < low.Coord(axis) || inner_high.Coord(axis) > high.Coord(axis)) return false;
+  return true;
+}
+
+/// Returns the diagonal of the smallest box around a shape. The exact box of a spline face is slow, and few
+/// faces reach beyond the box of all others, so faces come first whose boxes are fast or large.
 double diagonal_of(const TopoDS_Shape& shape) {
+  struct Face {
+    TopoDS_Shape shape;
+    Bnd_Box rough;
+    bool is_slow = false;
+  };
+  const auto add = [](const TopoDS_Shape& part, Bnd_Box& box) {
+    BRepBndLib::AddOptimal(part, box, /*useTriangulation=*/false, /*useShapeTolerance=*/false);
+  };
+  std::vector<Face> faces;
+  for (const TopoDS_Shape& face : subshapes(shape, TopAbs_FACE)) {
+    Bnd_Box rough;
+    BRepBndLib::Add(face, rough, /*useTriangulation=*/false);
+    faces.push_back({face, rough, BRepAdaptor_Surface(TopoDS::Face(face), false).GetType() > GeomAbs_Torus});
+  }
+  const auto extent = [](const Bnd_Box& rough) { return rough.IsVoid() ? 0 : rough.SquareExtent(); };
+  std::ranges::stable_sort(faces, {},
+                           [&](const Face& face) { return std::pair(face.is_slow, -extent(face.rough)); });
   Bnd_Box box;
   box.SetGap(0);
-  BRepBndLib::AddOptimal(shape, box, false, false);
+  for (const Face& face : faces)
+    if (!contains(box, face.rough)) add(face.shape, box);
+  for (TopExp_Explorer edge(shape, TopAbs_EDGE, TopAbs_FACE); edge.More(); edge.Next())
+    add(edge.Current(), box);
+  for (TopExp_Explorer vertex(shape, TopAbs_VERTEX, TopAbs_EDGE); vertex.More(); vertex.Next())
+    add(vertex.Current(), box);
   return box.IsVoid() ? 0 : std::sqrt(box.SquareExtent());
 }
 

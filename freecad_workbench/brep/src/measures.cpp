@@ -111,9 +111,10 @@ std::vector<std::optional<CadMeasure>> volumes_of(const Topology& topology, cons
   for (std::size_t s = 0; s < topology.solids.size(); ++s) {
     if (topology.solids[s].open) continue;
     const PolygonSoup& soup = tessellation.soups[s];
+    const double cut = volume_of_triangles(soup), sign = cut < 0 ? -1 : 1;  // a solid may be inside out
     Sum sum;
-    sum.add(0, volume_of_triangles(soup), 2 * deflection * area_of_triangles(soup));
-    for (const TopoDS_Shape& face : topology.solids[s].faces) sum.add(integrals.cone(face), 0, 0);
+    sum.add(0, sign * cut, 2 * deflection * area_of_triangles(soup));
+    for (const TopoDS_Shape& face : topology.solids[s].faces) sum.add(sign * integrals.cone(face), 0, 0);
     if (sum.is_plausible()) volumes[s] = sum.measure;
   }
   return volumes;

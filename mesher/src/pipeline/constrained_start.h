@@ -25,8 +25,8 @@ bool may_have_rods(const MeshJob& job);
 bool fill_rods(MeshJob& job);
 
 /// Makes the constrained tetrahedra of the complex, and brings their edges to the target lengths. Throws
-/// Ended.
-void tetrahedralize(MeshJob& job);
+/// Ended. With Hope::good, throws Hopeless if so many tets miss their bounds that improvement cannot help.
+void tetrahedralize(MeshJob& job, Hope hope);
 
 /// Relaxes, coarsens and improves the mesh again, as long as that reduces the number of tets that miss their
 /// bounds. With Hope::good, throws Hopeless if many tets miss them.

@@ -76,7 +76,7 @@ void MeshMaker::make(const Plc& plc, std::uint64_t seed) {
     set_up(plc, seed);
   }
   if (job_.start == Start::constrained)
-    tetrahedralize(job_);
+    tetrahedralize(job_, hope_);
   else
     refine(job_, fineness_);
   const bool too_fine = is_far_too_fine();
@@ -261,11 +261,18 @@ bool MeshMaker::take_constrained(const Plc& plc, const std::string& why, Lengths
                      keeps_lengths(constrained->result.mesh,
                                    smallest_size(job_.options.mesh, job_.plc->bounds.diagonal())));
   hopeless_ = is_constrained_ ? nullptr : &plc;
+  why_constrained_ = is_constrained_ ? why : "";
   if (is_constrained_)
     job_.made = std::move(*constrained);
   else
     nearer_ = nearer;
   return is_constrained_;
+}
+
+void MeshMaker::make_again(const Plc& plc, std::uint64_t seed) {
+  if (!prefers_constrained()) return make(plc, seed);
+  const std::string why = why_constrained_;  // `take_constrained` sets it
+  if (!take_constrained(plc, why)) throw Hopeless();
 }
 
 std::optional<PipelineResult> MeshMaker::from_constrained(const Plc& plc, const std::string& why, Hope hope) {
@@ -346,6 +353,7 @@ void MeshMaker::take_new_complex() {
   no_rods_ = nullptr;
   no_sheaths_ = nullptr;
   hopeless_ = nullptr;
+  why_constrained_.clear();
 }
 
 void MeshMaker::move_to(const Plc& plc) {

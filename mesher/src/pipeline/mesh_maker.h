@@ -62,6 +62,12 @@ class MeshMaker {
   /// tetrahedra have been tried already.
   bool depends_on_seed() const { return !is_constrained_ && job_.start != Start::constrained; }
 
+  /// Makes the kept mesh again in the way in which it was made, with the present tolerance. Throws as `make`
+  /// does, and Hopeless if constrained tetrahedra do not keep every guarantee.
+  void make_again(const Plc& plc, std::uint64_t seed);
+  /// Returns whether the kept mesh started from constrained tetrahedra because refinement was worse.
+  bool prefers_constrained() const { return !why_constrained_.empty(); }
+
   /// Multiplies the surface tolerance of first order by this share in further meshes of this complex.
   void come_nearer(const Plc& plc, double share);
   /// Multiplies the tolerance on each smooth patch by the patch's share. If a side of a wall has a share
@@ -93,6 +99,7 @@ class MeshMaker {
   Hope hope_ = Hope::any;
   bool was_far_too_fine_ = false;
   bool is_constrained_ = false;                // whether the kept mesh started from constrained tetrahedra
+  std::string why_constrained_;                // the reason if the kept mesh is of `take_constrained`
   const Plc* no_rods_ = nullptr;               // the complex whose rods had no good mesh
   const Plc* no_sheaths_ = nullptr;            // the complex whose rods inside regions had no good mesh
   const Plc* hopeless_ = nullptr;              // the complex whose constrained tetrahedra are not tried

@@ -424,8 +424,7 @@ bool Tries::may_keep_volumes() const {
   const PipelineOptions& given = job_.given;
   return given.order == 1 && given.start != Start::constrained && !(given.mesh.bounds.distance > 0) &&
          !given.mesh.bounds.tolerance && !given.layers.any() && !given.periodic.any() && !has_exploded_ &&
-         maker_.depends_on_seed() && job_.made.guarantees_hold() &&
-         job_.made.result.mesh.tets.size() <= most_tets;
+         job_.made.guarantees_hold() && job_.made.result.mesh.tets.size() <= most_tets;
 }
 
 /// Makes the mesh again, nearer to the surfaces of regions whose volumes call for a warning. The volumes that
@@ -478,9 +477,9 @@ bool Tries::come_nearer_where_missed(const Plc& plc) {
   return holds;
 }
 
-/// Makes the mesh again with these shares of the tolerance and at most a few times the vertices. Keeps it if
-/// it keeps every guarantee and `is_good_enough`. Returns whether it is kept. `why`: the reason that a note
-/// gives.
+/// Makes the mesh again with these shares of the tolerance and, if it is refined, at most a few times the
+/// vertices. Keeps it if it keeps every guarantee and `is_good_enough`. Returns whether it is kept. `why`:
+/// the reason that a note gives.
 bool Tries::make_nearer(const Plc& plc, const std::vector<double>& shares, const std::string& why,
                         const std::function<bool()>& is_good_enough) {
   constexpr std::size_t times_vertices = 3;
@@ -490,16 +489,18 @@ bool Tries::make_nearer(const Plc& plc, const std::vector<double>& shares, const
   std::size_t most = times_vertices * made.result.statistics.vertices_inserted;
   for (const std::size_t bound : {before, job_.given.mesh.max_vertices})
     if (bound > 0) most = std::min(most, bound);
-  job_.budget.set_most(most);
+  if (!maker_.prefers_constrained()) job_.budget.set_most(most);
   maker_.set_narrow_cells(narrow_cells_);
   maker_.come_nearer(plc, shares);
   const bool better = find_better(true, [&] {
-    maker_.make(plc, seed_);
+    maker_.make_again(plc, seed_);
     if (!is_good_enough()) throw Hopeless();
   });
   job_.budget.set_most(before);
   maker_.set_narrow_cells(NarrowCells::bounded_if_cheap);
   if (!better) return false;
+  std::erase_if(made.check.notes,
+                [&](const std::string& note) { return std::ranges::count(notes, note) > 0; });
   made.check.notes.insert(made.check.notes.begin(), notes.begin(), notes.end());
   made.check.notes.push_back("made nearer to smooth surfaces, because " + why);
   return true;
