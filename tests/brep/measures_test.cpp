@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 #include <BRepAlgoAPI_Common.hxx>
 #include <BRepAlgoAPI_Cut.hxx>
+#include <BRepAlgoAPI_Fuse.hxx>
+#include <BRepBndLib.hxx>
 #include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepBuilderAPI_MakeWire.hxx>
@@ -17,6 +19,7 @@
 #include <BRepPrimAPI_MakeSphere.hxx>
 #include <BRepPrimAPI_MakeTorus.hxx>
 #include <BRepTools.hxx>
+#include <Bnd_Box.hxx>
 #include <GProp_GProps.hxx>
 #include <GeomAPI_Interpolate.hxx>
 #include <TColgp_HArray1OfPnt.hxx>
@@ -242,6 +245,23 @@ TEST(CadMeasures, OfAWaveThatIsExtrudedAndCutObliquely) {
               1e-5 * expected);
 }
 
+/// Exact boxes of most spline faces are left out, which must not change the box of the shape.
+TEST(CadModel, HasTheDiagonalOfTheExactBox) {
+  const TopoDS_Shape ball = BRepBuilderAPI_NurbsConvert(BRepPrimAPI_MakeSphere(5).Shape(), true).Shape();
+  const TopoDS_Shape disk = BRepBuilderAPI_NurbsConvert(WavyDisk{.teeth = 6}.extruded(3), true).Shape();
+  const TopoDS_Shape box = BRepPrimAPI_MakeBox(gp_Pnt(-9, -9, -2), gp_Pnt(9, 2, 2)).Shape();
+  gp_Trsf turned;
+  turned.SetRotation(gp_Ax1(gp_Pnt(1, 2, 3), gp_Dir(0.3, 0.5, 0.8)), 0.7);
+  for (const TopoDS_Shape& shape : {ball, disk, WavyDisk{.teeth = 6}.extruded(3), box,
+                                    BRepAlgoAPI_Fuse(ball, box).Shape(), BRepAlgoAPI_Cut(box, ball).Shape()})
+    for (const TopoDS_Shape& placed : {shape, BRepBuilderAPI_Transform(shape, turned).Shape()}) {
+      Bnd_Box exact;
+      exact.SetGap(0);
+      BRepBndLib::AddOptimal(placed, exact, false, false);
+      EXPECT_DOUBLE_EQ(brep::CadModel(placed, "part").diagonal(), std::sqrt(exact.SquareExtent()));
+    }
+}
+
 TEST(CadMeasures, OfAWaveThatIsRevolved) {
   const int waves = 12;
   const double length = 12, radius = 3, height = 0.3;
@@ -377,6 +397,28 @@ TEST(CadMeasures, ReachTheCertificate) {
   EXPECT_NEAR(exact.volumes[1], 63 * pi, 1e-9);
   EXPECT_EQ(exact.areas.size(), 3U);
   EXPECT_EQ(exact.lengths.size(), 2U);
+}
+
+// This tube is meshed from constrained tetrahedra, and the first mesh loses 3% of the volume.
+TEST(CadMeasures, OfATubeAreNearInAMeshOfConstrainedTetrahedra) {
+  constexpr double radius = 0.005, inner = 0.9 * radius, length = 20;
+  const double expected = pi * (radius * radius - inner * inner) * length;
+  const TemporaryFolder folder;
+  const std::string path = folder.file("tube.brep");
+  BRepTools::Write(BRepAlgoAPI_Cut(BRepPrimAPI_MakeCylinder(radius, length).Shape(),
+                                   BRepPrimAPI_MakeCylinder(inner, length).Shape())
+                       .Shape(),
+                   path.c_str());
+  command::MeshArguments arguments;
+  arguments.inputs = {path};
+  arguments.mesh.size = 10;
+  process::Process process;
+  const PipelineResult made = command::make_mesh(process, arguments).run;
+  EXPECT_EQ(made.missed(), "");
+  EXPECT_NEAR(made.check.of_mesh.volumes.at(1), expected, 0.02 * expected);
+  const auto& notes = made.check.notes;
+  for (const std::string start : {"begun with", "made nearer"})
+    EXPECT_EQ(std::ranges::count_if(notes, [&](const std::string& n) { return n.starts_with(start); }), 1);
 }
 
 }  // namespace

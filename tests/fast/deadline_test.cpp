@@ -108,20 +108,5 @@ TEST(RunControl, AttemptsMayContainAttempts) {
   EXPECT_FALSE(control.out_of_time());
 }
 
-TEST(RunControl, WorkWithoutTheTimeLimitIsEndedOnlyByACancellation) {
-  std::atomic<bool> cancel{false};
-  PipelineResult made;
-  Execution execution;
-  execution.cancel = &cancel;
-  PipelineOptions options;
-  options.mesh.time_limit = 1e-9;
-  RunControl control(options, execution, made);
-  while (!control.execution().cancelled()) std::this_thread::yield();
-  EXPECT_NO_THROW(control.run_without_time_limit([&] { control.begin("complex", 0, 0.1); }));
-  EXPECT_THROW(control.begin("complex", 0, 0.1), Ended);
-  cancel = true;
-  EXPECT_THROW(control.run_without_time_limit([&] { control.begin("complex", 0, 0.1); }), Ended);
-}
-
 }  // namespace
 }  // namespace collarmesh::deadline_test

@@ -51,30 +51,43 @@ bool contains(const Bnd_Box& outer, const Bnd_Box& inner) {
   return true;
 }
 
-/// Returns the diagonal of the smallest box around a shape. The exact box of a spline face is slow, and few
-/// faces reach beyond the box of all others, so faces come first whose boxes are fast or large.
-double diagonal_of(const TopoDS_Shape& shape) {
-  struct Face {
-    TopoDS_Shape shape;
-    Bnd_Box rough;
-    bool is_slow = false;
-  };
-  const auto add = [](const TopoDS_Shape& part, Bnd_Box& box) {
-    BRepBndLib::AddOptimal(part, box, /*useTriangulation=*/false, /*useShapeTolerance=*/false);
-  };
-  std::vector<Face> faces;
+/// A face and its rough box. OpenCASCADE takes long to find the exact box of a spline.
+struct BoxedFace {
+  TopoDS_Shape face;
+  Bnd_Box rough;
+  bool has_slow_box = false;
+  bool is_inside_rough = false;  // OpenCASCADE only samples some other surfaces for a rough box
+};
+
+std::vector<BoxedFace> boxed_faces(const TopoDS_Shape& shape) {
+  constexpr double margin = 1e-4;  // relative; exact boxes are a little larger than some rough ones
+  std::vector<BoxedFace> faces;
   for (const TopoDS_Shape& face : subshapes(shape, TopAbs_FACE)) {
     Bnd_Box rough;
     BRepBndLib::Add(face, rough, /*useTriangulation=*/false);
-    faces.push_back({face, rough, BRepAdaptor_Surface(TopoDS::Face(face), false).GetType() > GeomAbs_Torus});
+    if (!rough.IsVoid()) rough.Enlarge(margin * std::sqrt(rough.SquareExtent()));
+    const GeomAbs_SurfaceType type = BRepAdaptor_Surface(TopoDS::Face(face), false).GetType();
+    const bool is_quadric = type == GeomAbs_Plane || type == GeomAbs_Cylinder || type == GeomAbs_Cone ||
+                            type == GeomAbs_Sphere || type == GeomAbs_Torus;
+    faces.push_back({face, rough, !is_quadric, is_quadric || type == GeomAbs_BSplineSurface});
   }
-  const auto extent = [](const Bnd_Box& rough) { return rough.IsVoid() ? 0 : rough.SquareExtent(); };
-  std::ranges::stable_sort(faces, {},
-                           [&](const Face& face) { return std::pair(face.is_slow, -extent(face.rough)); });
+  return faces;
+}
+
+/// Returns the diagonal of the smallest box around a shape. Faces whose boxes are fast to compute or large
+/// come first, because other faces need no exact box if they do not reach beyond the box of these.
+double diagonal_of(const TopoDS_Shape& shape) {
+  const auto add = [](const TopoDS_Shape& part, Bnd_Box& box) {
+    BRepBndLib::AddOptimal(part, box, /*useTriangulation=*/false, /*useShapeTolerance=*/false);
+  };
+  std::vector<BoxedFace> faces = boxed_faces(shape);
+  std::ranges::stable_sort(faces, {}, [](const BoxedFace& face) {
+    return std::pair(face.has_slow_box, face.rough.IsVoid() ? 0 : -face.rough.SquareExtent());
+  });
   Bnd_Box box;
   box.SetGap(0);
-  for (const Face& face : faces)
-    if (!contains(box, face.rough)) add(face.shape, box);
+  for (const BoxedFace& face : faces)
+    if (!face.is_inside_rough || !contains(box, face.rough)) add(face.face, box);
   for (TopExp_Explorer edge(shape, TopAbs_EDGE, TopAbs_FACE); edge.More(); edge.Next())
     add(edge.Current(), box);
   for (TopExp_Explorer vertex(shape, TopAbs_VERTEX, TopAbs_EDGE); vertex.More(); vertex.Next())

@@ -8,7 +8,6 @@
 #include <mutex>
 #include <stop_token>
 #include <thread>
-#include <utility>
 
 namespace collarmesh {
 
@@ -99,27 +98,18 @@ void RunControl::attempt(double share_of_time, const std::function<void()>& work
   if (remaining <= 0) return;
   const Execution outside = inner_;
   attempts_.push_back(std::make_unique<Watch>(Deadline::in(share_of_time * remaining), outside));
-  try {
-    with_flag(&attempts_.back()->flag(), work);
-  } catch (...) {
+  inner_.cancel = &attempts_.back()->flag();
+  const auto restore = [&] {
+    inner_.cancel = outside.cancel;
     attempts_.pop_back();
-    throw;
-  }
-  attempts_.pop_back();
-}
-
-void RunControl::run_without_time_limit(const std::function<void()>& work) { with_flag(outer_.cancel, work); }
-
-/// Runs work that this flag ends.
-void RunControl::with_flag(const std::atomic<bool>* cancel, const std::function<void()>& work) {
-  const std::atomic<bool>* const before = std::exchange(inner_.cancel, cancel);
+  };
   try {
     work();
   } catch (...) {
-    inner_.cancel = before;
+    restore();
     throw;
   }
-  inner_.cancel = before;
+  restore();
 }
 
 /// Forwards the progress of a stage, scaled to its share of the whole.

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <atomic>
 #include <functional>
 #include <memory>
 #include <string_view>
@@ -47,14 +46,9 @@ class RunControl {
   /// if no time remains.
   void attempt(double share_of_time, const std::function<void()>& work);
 
-  /// Runs work that the result at hand needs, such as undoing an attempt, even if no time remains. A
-  /// cancellation ends it.
-  void run_without_time_limit(const std::function<void()>& work);
-
  private:
   class Watch;
   bool go_on(ProgressReport report);
-  void with_flag(const std::atomic<bool>* cancel, const std::function<void()>& work);
 
   PipelineResult& made_;
   const double time_limit_;  // seconds; 0: none

@@ -98,7 +98,7 @@ std::size_t fill_ladders(MeshJob& job, const Plc& divided) {
 /// miss them afterwards. The shares before and after differ by a factor of up to 2.6 on real parts.
 void require_few_misshapen(MeshJob& job) {
   constexpr std::size_t times_before = 4;
-  TetMesh mesh = job.made.result.mesh;  // a copy, as later stages mark cells anew
+  TetMesh mesh = job.made.result.mesh;  // a copy, so that later stages get the mesh without marks
   remeshing::mark_cells(mesh, *job.plc, job.refined_with.bounds);
   job.made.coarsening.emplace();  // thin tets count as good, as after coarsening
   const std::size_t misshapen = count_misshapen(job, mesh);

@@ -261,18 +261,25 @@ bool MeshMaker::take_constrained(const Plc& plc, const std::string& why, Lengths
                      keeps_lengths(constrained->result.mesh,
                                    smallest_size(job_.options.mesh, job_.plc->bounds.diagonal())));
   hopeless_ = is_constrained_ ? nullptr : &plc;
-  why_constrained_ = is_constrained_ ? why : "";
-  if (is_constrained_)
+  constrained_.reset();
+  if (is_constrained_) {
     job_.made = std::move(*constrained);
-  else
+    constrained_ = Constrained{why, lengths};
+  } else {
     nearer_ = nearer;
+  }
   return is_constrained_;
 }
 
 void MeshMaker::make_again(const Plc& plc, std::uint64_t seed) {
   if (!prefers_constrained()) return make(plc, seed);
-  const std::string why = why_constrained_;  // `take_constrained` sets it
-  if (!take_constrained(plc, why)) throw Hopeless();
+  const Constrained before = *constrained_;
+  if (take_constrained(plc, before.why, before.lengths)) return;
+  // The kept mesh stays.
+  constrained_ = before;
+  is_constrained_ = true;
+  hopeless_ = nullptr;
+  throw Hopeless();
 }
 
 std::optional<PipelineResult> MeshMaker::from_constrained(const Plc& plc, const std::string& why, Hope hope) {
@@ -353,7 +360,7 @@ void MeshMaker::take_new_complex() {
   no_rods_ = nullptr;
   no_sheaths_ = nullptr;
   hopeless_ = nullptr;
-  why_constrained_.clear();
+  constrained_.reset();
 }
 
 void MeshMaker::move_to(const Plc& plc) {

@@ -62,11 +62,11 @@ class MeshMaker {
   /// tetrahedra have been tried already.
   bool depends_on_seed() const { return !is_constrained_ && job_.start != Start::constrained; }
 
-  /// Makes the kept mesh again in the way in which it was made, with the present tolerance. Throws as `make`
-  /// does, and Hopeless if constrained tetrahedra do not keep every guarantee.
+  /// Makes the kept mesh again, with the present tolerance: by `take_constrained` if that made it, else by
+  /// `make` with this seed. Throws as `make` does, and Hopeless if `take_constrained` does not use the mesh.
   void make_again(const Plc& plc, std::uint64_t seed);
-  /// Returns whether the kept mesh started from constrained tetrahedra because refinement was worse.
-  bool prefers_constrained() const { return !why_constrained_.empty(); }
+  /// Returns whether `take_constrained` made the kept mesh.
+  bool prefers_constrained() const { return constrained_.has_value(); }
 
   /// Multiplies the surface tolerance of first order by this share in further meshes of this complex.
   void come_nearer(const Plc& plc, double share);
@@ -79,6 +79,12 @@ class MeshMaker {
   void set_fineness(Fineness fineness) { fineness_ = fineness; }
 
  private:
+  /// The arguments of `take_constrained`.
+  struct Constrained {
+    std::string why;
+    Lengths lengths;
+  };
+
   void set_up(const Plc& plc, std::uint64_t seed);
   bool may_be_better_constrained() const;
   bool take_rods();
@@ -99,7 +105,7 @@ class MeshMaker {
   Hope hope_ = Hope::any;
   bool was_far_too_fine_ = false;
   bool is_constrained_ = false;                // whether the kept mesh started from constrained tetrahedra
-  std::string why_constrained_;                // the reason if the kept mesh is of `take_constrained`
+  std::optional<Constrained> constrained_;     // how `take_constrained` made the kept mesh
   const Plc* no_rods_ = nullptr;               // the complex whose rods had no good mesh
   const Plc* no_sheaths_ = nullptr;            // the complex whose rods inside regions had no good mesh
   const Plc* hopeless_ = nullptr;              // the complex whose constrained tetrahedra are not tried

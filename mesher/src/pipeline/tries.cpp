@@ -99,6 +99,7 @@ void Tries::mesh_repaired(SoupPipelineResult& all) {
 }
 
 void Tries::mesh_any_repaired(SoupPipelineResult& all) {
+  constexpr double share_of_time = 0.5;
   const PipelineOptions& given = job_.given;
   PipelineResult& made = job_.made;
   build(given.repair, all);
@@ -124,15 +125,24 @@ void Tries::mesh_any_repaired(SoupPipelineResult& all) {
   if (end == End::missed && come_nearer_where_missed(all.plc)) return;
   for (const RepairOptions& repair : repairs) {
     SoupPipelineResult other;
-    const bool better = find_better(has_mesh, [&] {
-      build(repair, other);
-      if (repair.wrap_at_once) job_.budget.bound(Ways::none);
-      if (end == End::exploded && !repair.wrap_at_once) require_kept(all, other);
-      if (end == End::missed && !repair.wrap_at_once) require_change(all, other, place);
-      maker_.make(other.plc, given.mesh.seed);
-    });
-    built_last = better;
+    bool better = false;
+    const auto try_repair = [&] {
+      better = find_better(has_mesh, [&] {
+        built_last = false;
+        build(repair, other);
+        if (repair.wrap_at_once) job_.budget.bound(Ways::none);
+        if (end == End::exploded && !repair.wrap_at_once) require_kept(all, other);
+        if (end == End::missed && !repair.wrap_at_once) require_change(all, other, place);
+        maker_.make(other.plc, given.mesh.seed);
+      });
+    };
+    // A time limit that ends a try must leave time to build the complex of the mesh at hand again.
+    if (has_mesh)
+      job_.control.attempt(share_of_time, try_repair);
+    else
+      try_repair();
     if (!better) continue;
+    built_last = true;
     current = repair;
     all.plc = std::move(other.plc);
     all.repair = std::move(other.repair);
@@ -146,8 +156,7 @@ void Tries::mesh_any_repaired(SoupPipelineResult& all) {
   if (has_mesh && made.guarantees_hold()) return;
   if (!built_last) {
     try {
-      // So that the source built this complex last. A time limit that ended a repair must not lose the mesh.
-      job_.control.run_without_time_limit([&] { build(current, all); });
+      build(current, all);  // so that the source built this complex last
     } catch (const PlcError&) {
       if (!has_mesh) throw;
       return;
@@ -417,8 +426,9 @@ double Tries::largest_loss(const Plc& plc, std::vector<double>* shares) const {
   return largest;
 }
 
-/// Returns whether the kept mesh is small, keeps every guarantee, and was refined with the default distances
-/// of first order, without layers or periodic faces and without hitting the bound on vertices.
+/// Returns whether the kept mesh is small, keeps every guarantee, and has the default distances of first
+/// order, no layers and no periodic faces. It must not consist of rings around rods, and its refinement must
+/// not have hit the bound on vertices.
 bool Tries::may_keep_volumes() const {
   constexpr std::size_t most_tets = 100'000;
   const PipelineOptions& given = job_.given;
@@ -482,19 +492,21 @@ bool Tries::come_nearer_where_missed(const Plc& plc) {
 /// the reason that a note gives.
 bool Tries::make_nearer(const Plc& plc, const std::vector<double>& shares, const std::string& why,
                         const std::function<bool()>& is_good_enough) {
-  constexpr std::size_t times_vertices = 3;
+  constexpr std::size_t times_vertices = 3, times_tets = 3;
   PipelineResult& made = job_.made;
-  const std::vector<std::string> notes = made.check.notes;
+  std::vector<std::string> notes = made.check.notes;
+  const bool constrained = maker_.prefers_constrained();
+  const std::size_t most_tets = constrained ? times_tets * made.result.mesh.tets.size() : none;
   const std::size_t before = job_.budget.most();
   std::size_t most = times_vertices * made.result.statistics.vertices_inserted;
   for (const std::size_t bound : {before, job_.given.mesh.max_vertices})
     if (bound > 0) most = std::min(most, bound);
-  if (!maker_.prefers_constrained()) job_.budget.set_most(most);
+  if (!constrained && most > 0) job_.budget.set_most(most);
   maker_.set_narrow_cells(narrow_cells_);
   maker_.come_nearer(plc, shares);
   const bool better = find_better(true, [&] {
     maker_.make_again(plc, seed_);
-    if (!is_good_enough()) throw Hopeless();
+    if (made.result.mesh.tets.size() > most_tets || !is_good_enough()) throw Hopeless();
   });
   job_.budget.set_most(before);
   maker_.set_narrow_cells(NarrowCells::bounded_if_cheap);
