@@ -95,7 +95,7 @@ std::size_t fill_ladders(MeshJob& job, const Plc& divided) {
 }
 
 /// Throws Hopeless if so many tets miss their bounds before coarsening and improvement that too many will
-/// miss them afterwards. The shares before and after differ by a factor of up to 2.6 on real parts.
+/// miss them afterwards. On real parts these stages divide the share by at most 2.6.
 void require_few_misshapen(MeshJob& job) {
   constexpr std::size_t times_before = 4;
   TetMesh mesh = job.made.result.mesh;  // a copy, so that later stages get the mesh without marks

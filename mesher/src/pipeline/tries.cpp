@@ -434,7 +434,8 @@ bool Tries::may_keep_volumes() const {
   const PipelineOptions& given = job_.given;
   return given.order == 1 && given.start != Start::constrained && !(given.mesh.bounds.distance > 0) &&
          !given.mesh.bounds.tolerance && !given.layers.any() && !given.periodic.any() && !has_exploded_ &&
-         job_.made.guarantees_hold() && job_.made.result.mesh.tets.size() <= most_tets;
+         (maker_.depends_on_seed() || maker_.prefers_constrained()) && job_.made.guarantees_hold() &&
+         job_.made.result.mesh.tets.size() <= most_tets;
 }
 
 /// Makes the mesh again, nearer to the surfaces of regions whose volumes call for a warning. The volumes that
@@ -487,9 +488,9 @@ bool Tries::come_nearer_where_missed(const Plc& plc) {
   return holds;
 }
 
-/// Makes the mesh again with these shares of the tolerance and, if it is refined, at most a few times the
-/// vertices. Keeps it if it keeps every guarantee and `is_good_enough`. Returns whether it is kept. `why`:
-/// the reason that a note gives.
+/// Makes the mesh again with these shares of the tolerance and at most a few times the vertices or, if it
+/// began with constrained tetrahedra, the tets. Keeps it if it keeps every guarantee and `is_good_enough`.
+/// Returns whether it is kept. `why`: the reason that a note gives.
 bool Tries::make_nearer(const Plc& plc, const std::vector<double>& shares, const std::string& why,
                         const std::function<bool()>& is_good_enough) {
   constexpr std::size_t times_vertices = 3, times_tets = 3;
@@ -511,8 +512,11 @@ bool Tries::make_nearer(const Plc& plc, const std::vector<double>& shares, const
   job_.budget.set_most(before);
   maker_.set_narrow_cells(NarrowCells::bounded_if_cheap);
   if (!better) return false;
-  std::erase_if(made.check.notes,
-                [&](const std::string& note) { return std::ranges::count(notes, note) > 0; });
+  // The maker has written its own notes again.
+  std::erase_if(notes, [&](const std::string& note) {
+    return (constrained && note.starts_with("made with seed")) ||
+           std::ranges::count(made.check.notes, note) > 0;
+  });
   made.check.notes.insert(made.check.notes.begin(), notes.begin(), notes.end());
   made.check.notes.push_back("made nearer to smooth surfaces, because " + why);
   return true;
