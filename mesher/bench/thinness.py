@@ -7,10 +7,11 @@ thinness.py [--families wedge step ...] [--thinness 1e-1 1e-2 ...] [--program co
 Each body is about 10 target edge lengths wide. --thinness gives the thickness of its feature, in target edge
 lengths. The table has a row for each family and a column for each thickness. Its entries are the vertices that
 refinement inserted (in the last try), the tets and the CPU seconds of the whole run; then the exit code unless
-it is 0, and the number of regions if it is wrong. Two columns, "power to" --feature-size and "below" it, are
-the exponent with which the number of vertices grows with 1 / thickness: the largest one between neighbouring
-thicknesses. "volumes off" is the largest relative error of a region's volume in runs with exit code 0, or the
-error of the total volume if a region is missing. Rows go to --out as they come."""
+it is 0, and the number of regions if it is wrong. The number of vertices grows with a power of 1 / thickness.
+Two columns give the largest exponent between neighbouring thicknesses: "power to S" for thicknesses down to the
+feature size S (--feature-size), "below" for smaller ones. "volumes off" is the largest relative error of a
+region's volume in runs with exit code 0, or the error of the total volume if a region is missing. Rows go to
+--out as they come."""
 
 from __future__ import annotations
 

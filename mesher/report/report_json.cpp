@@ -195,7 +195,8 @@ Json colour_json(const std::map<Tag, Colour>& colours, Tag tag) {
   return found == colours.end() ? Json(nullptr) : Json(colour_text(found->second));
 }
 
-/// Returns an estimate as a whole number if it fits: estimates may exceed every integer.
+/// Returns an estimate, rounded to a whole number up to 2^53, below which doubles hold each whole number
+/// exactly; above as a double, or null if it is infinite.
 Json whole_json(double value) {
   constexpr double exact = 9007199254740992;  // 2^53
   return std::fabs(value) <= exact ? Json(std::llround(value)) : number_json(value);

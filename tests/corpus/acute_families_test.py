@@ -2,7 +2,8 @@
 
     acute_families_test.py PROGRAM ACUTE_SHAPE [-k WORD] [--keep FOLDER] [--workers N]
 
-Every family that ACUTE_SHAPE can write, at set parameters and at random ones. Planar members are judged with
+Every family that ACUTE_SHAPE can write, at set parameters and at random ones. Half of the members are due each day,
+all of them with -k or where COLLARMESH_LONG is set. Planar members are judged with
 --exact, curved ones by the distance tolerance. Exit code 77 (skipped) without a checker (judging.py).
 
 The checker knows triangles that share their corners; it knows no facets, no segments and no several files. So it is
@@ -25,7 +26,7 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from judging import JUDGE, LONG, MOST_TETS, TIME_LIMIT, Failed, run, verdict
+from judging import JUDGE, LONG, MOST_TETS, TIME_LIMIT, Failed, is_due, run, verdict
 
 SIZE = 0.3 if LONG else 0.4
 DISTANCE = 2e-3  # about a thousandth of the diagonals
@@ -128,7 +129,8 @@ def main():
     if missing := families_without_member(arguments.generator, members):
         print(f"families without a member: {', '.join(sorted(missing))}")
         return 1
-    members = [member for member in members if arguments.k in member.name]
+    days = 1 if LONG or arguments.k else 2
+    members = [member for member in members if arguments.k in member.name and is_due(member.name, days)]
     failures = 0
     with tempfile.TemporaryDirectory() as temporary, concurrent.futures.ThreadPoolExecutor(arguments.workers) as pool:
         folder = Path(arguments.keep or temporary)

@@ -14,6 +14,7 @@
 #include "collarmesh/repair.h"
 #include "remesh/thin_shape.h"
 #include "support/meshing.h"
+#include "support/sanitized.h"
 #include "support/shapes.h"
 #include "support/tubes.h"
 
@@ -23,12 +24,14 @@ namespace {
 using namespace testing;
 
 constexpr double size = 1, wire = 0.03;
+constexpr Index edges_around = sanitized ? 24 : 48;
 
-Plc ring_in_block(Index around = 48, Index along = 240) {
+Plc ring_in_block(Index around = edges_around, Index along = 5 * edges_around) {
   return build_plc(std::vector{box({-2, -2, -2}, {2, 2, 2}), wire_ring(1, wire, around, along)});
 }
 Plc wire_in_block(double radius = wire, double height = 2) {
-  return build_repaired_plc(std::vector{cylinder(radius, height, 48), box({-2, -2, 0}, {2, 2, 2})}).plc;
+  return build_repaired_plc(std::vector{cylinder(radius, height, edges_around), box({-2, -2, 0}, {2, 2, 2})})
+      .plc;
 }
 
 std::vector<SheathedRod> rods_in(const Plc& plc, int order = 1) {

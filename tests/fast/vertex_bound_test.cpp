@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "pipeline/vertex_budget.h"
 #include "support/shapes.h"
 
 namespace collarmesh::vertex_bound_test {
@@ -70,6 +71,24 @@ TEST(VertexBound, TheSmallestSizeIsThatOfAnyFeature) {
   EXPECT_EQ(smallest_size({}, 20), 1);
   EXPECT_EQ(smallest_size({.size = 0.5}, 20), 0.5);
   EXPECT_EQ(smallest_size({.region_size = {{1, 0.3}}, .patch_size = {{4, 0.2}}}, 20), 0.2);
+}
+
+TEST(VertexBudget, IsTightAfterAnExplosionWhileThereAreOtherWays) {
+  const Plc plc = boxes_apart(0.5);
+  PipelineOptions given;
+  given.mesh.size = 0.1;
+  pipeline::VertexBudget budget(given);
+  const auto found = [&] {
+    budget.find(plc, given);
+    return budget.most();
+  };
+  budget.bound(pipeline::Ways::others);
+  const std::size_t usual = found();
+  EXPECT_EQ(usual, bound(plc, given.mesh));
+  budget.tighten();
+  EXPECT_EQ(found(), usual / 4);
+  budget.bound(pipeline::Ways::none);
+  EXPECT_GE(found(), 2 * usual);
 }
 
 }  // namespace

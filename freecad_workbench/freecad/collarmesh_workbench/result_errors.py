@@ -43,7 +43,8 @@ class Errors:
 
     @property
     def relative(self):
-        """Returns the error of the whole solution relative to its norm, 0 to 1."""
+        """Returns the error of the whole solution relative to the norm of the exact solution, which is
+        estimated; from 0 to 1."""
         squares = float((self.of_tets**2).sum())
         return (squares / (squares + self.energy_norm**2)) ** 0.5 if squares else 0.0
 

@@ -334,8 +334,10 @@ bool BoundaryRecovery::clear_edge(const std::vector<CrossedFace>& crossed, const
   return changed;
 }
 
-/// Adds a point on an edge: at its crossing with a face, preferably near the edge's middle; else between two
-/// crossings or a few rounding errors beside one, because the rounded point may lie beyond a feature.
+/// Adds a point on an edge: at a crossing with a face, preferably near the edge's middle. A rounded crossing
+/// may lie beyond a feature, so that it cannot be inserted. Then tries the middles of the parts of the edge
+/// beside the crossings, and last places up to `most_errors` rounding errors away from the crossings. Returns
+/// none if no place can be used.
 Index BoundaryRecovery::divide_at_crossing(Index a, Index b, std::vector<CrossedFace>& crossed) {
   if (++added_ > most_added_) fail(a, "An edge");
   std::ranges::sort(crossed, {}, [](const CrossedFace& c) { return std::fabs(c.place - 0.5); });

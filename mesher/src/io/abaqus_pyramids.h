@@ -52,8 +52,8 @@ class HalvedPyramids {
 };
 
 /// Joins pairs of tets that are halves of pyramids, and removes the nodes in the middle of their bases if
-/// these are the last points. Returns the new index of each tet, none for halves; nothing if the tets are not
-/// halves.
+/// these are the last points. Returns the new index of each tet, none for halves. Returns nothing if a pair
+/// does not form a pyramid.
 std::optional<std::vector<Index>> join_pyramids(const std::vector<std::array<Index, 2>>& halves,
                                                 TetMesh& mesh);
 

@@ -6,7 +6,8 @@
 
 namespace collarmesh::io {
 
-/// The first line of our own files, in which the reference of a cell with volume is the index of its region.
+/// The first line of files that we write. In them the reference of a three-dimensional cell is its region's
+/// index.
 constexpr std::string_view medit_signature = "# Written by collarmesh.\n";
 
 /// Returns the keyword of a kind of cells of first order. Tets, triangles and edges of second order add P2.

@@ -21,9 +21,11 @@ constexpr double direction_precision = 1e-6;
 constexpr double narrow = 0.6;
 // The direction from means of normals is used if its least cosine exceeds this share of the best one's.
 constexpr double steep_enough = 0.85;
-// Two planes, or two lines, count as the same if the sine of the angle between them is at most this.
+// Two planes count as the same if the sine of the angle between them is at most this.
 constexpr double parallel = 1e-4;
-// Lines may leave planes by this sine, because the normals of curved patches are means over triangles.
+// If only one direction is possible, it may deviate from each line and plane on which the node has to stay by
+// an angle with this sine: normals of curved patches are means over triangles, so the constraints agree only
+// roughly.
 constexpr double nearly_parallel = 0.02;
 
 }  // namespace

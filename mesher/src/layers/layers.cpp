@@ -58,7 +58,7 @@ class LayerMaker {
  private:
   enum class Outcome { taken, folded, cancelled };
 
-  /// Gives a mesh first order. Returns whether it had second order.
+  /// Removes the mid-edge nodes of a mesh. Returns whether it had any.
   static bool straightened(TetMesh& mesh) {
     if (mesh.order() == 1) return false;
     straighten(mesh);

@@ -29,7 +29,7 @@ std::size_t count_misshapen(const MeshJob& job, const TetMesh& mesh) {
                                     .threads = job.options.mesh.threads},
                                    job.execution());
   const auto poor = static_cast<std::size_t>(std::ranges::count_if(report.findings, is_about_shape));
-  // Do not count images at inexact places: `finish_map` makes the places exact when the mesh is finished.
+  // `periodic_places` is not counted: `finish_map` makes places exact when the mesh is finished.
   constexpr std::size_t worse = 1000;  // weight of a missing image, relative to a poor tet
   CheckReport of_pairs;
   checks::check_periodic(mesh, of_pairs);

@@ -118,6 +118,7 @@ void Tries::mesh_any_repaired(SoupPipelineResult& all) {
   if (!sharp.empty() && end != End::exploded && end != End::refused) made.check.notes.push_back(sharp);
   if (end == End::holds) return;
   const std::vector<RepairOptions> repairs = repairs_after(end, all);
+  if (end == End::exploded) job_.budget.tighten();
   bool has_mesh = end == End::missed, built_last = true;
   std::optional<Point> place;
   // If places far thinner than the sizes spoil the mesh, a change at any of them may help.

@@ -13,11 +13,17 @@ void VertexBudget::bound(Ways ways) {
   is_known_ = false;
 }
 
+void VertexBudget::tighten() {
+  is_tight_ = true;
+  is_known_ = false;
+}
+
 // Finds the budget of vertices for a complex. A budget that the options give counts unless the computed one
 // is smaller; if there is no other way to make a mesh (`Ways::none`), the given one always counts.
 void VertexBudget::find(const Plc& plc, const PipelineOptions& options) {
   // Bodies far thinner than the size really need many vertices.
   constexpr std::size_t times_without_other_ways = 2, least_without_other_ways = 300'000;
+  constexpr std::size_t by_tightening = 4;  // parts whose refinement does not explode need no more
   if (is_known_) return;
   const std::size_t given = given_.mesh.max_vertices;
   is_known_ = true;
@@ -25,6 +31,7 @@ void VertexBudget::find(const Plc& plc, const PipelineOptions& options) {
   if (given_.mesh.profile == Profile::paper) return;  // its sizes do not tell how many vertices to expect
   if (ways_ == Ways::none && given > 0) return;
   std::size_t most = most_vertices_expected(plc, options);
+  if (ways_ == Ways::others && is_tight_) most /= by_tightening;
   if (ways_ == Ways::none)
     most = std::max({times_without_other_ways * most, least_without_other_ways,
                      most_vertices_on_rods(plc, options.mesh)});

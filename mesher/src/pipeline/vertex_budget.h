@@ -21,6 +21,9 @@ class VertexBudget {
   /// mesh. The bound is computed when it is needed.
   void bound(Ways ways);
 
+  /// Lowers the bound for further refinements while there are other ways, because one has exploded.
+  void tighten();
+
   /// Computes the number for a complex with these options, unless it is known.
   void find(const Plc& plc, const PipelineOptions& options);
 
@@ -36,7 +39,7 @@ class VertexBudget {
  private:
   const PipelineOptions& given_;
   Ways ways_ = Ways::none;  // whether there are other ways
-  bool is_known_ = false;
+  bool is_known_ = false, is_tight_ = false;
   std::size_t most_ = 0;
 };
 

@@ -16,8 +16,8 @@ struct ChainLink {
   std::uint32_t stamp;
 };
 
-/// The crease curves that have no collar yet, when collars are created in the pass: the history of their
-/// chains, and which of the creases may have become isolated.
+/// The crease curves that have no collar yet, in runs that create collars while the loop refines ("in the
+/// pass", see CollarCreator): the history of their chains, and which of the creases may have become isolated.
 ///
 /// Invariant: an open crease that has changed since it was last tested is touched, and is in the list of
 /// touched creases once. CurveChains opens creases and reports their chains; CollarCreator touches them,

@@ -45,7 +45,8 @@ class CellBounds {
   /// Keeps the mesh by reference if each tet needs an interior node.
   CellBounds(const Plc& plc, const TetMesh& mesh, const Bounds& bounds);
 
-  /// Returns whether a tet with these corners may be made. With default options all thin tets may be made.
+  /// Returns whether a tet with these corners may be made. With default options, tets that keep the bounds on
+  /// thin tets (`ThinShape`) are always allowed.
   bool allow(const Corners& p, const std::array<Index, 4>& corners) const {
     if (lacks_interior_node(corners)) return false;
     if (creases_.touch(corners)) return dihedral_cosines(p).largest_angle >= cosine_;

@@ -127,7 +127,8 @@ class SurfaceEditor {
   }
   /// Returns the edges of a vertex's curve, before and behind it; none unless it is inside a single curve.
   std::optional<std::array<Index, 2>> edges_around(Index vertex) const;
-  /// Returns whether the vertex is the end of a tip. Such vertices stay where they are.
+  /// Returns whether the vertex is the outer end of a tip (`SharpCorners`), the one away from the sharp
+  /// corner. Such vertices stay where they are.
   bool ends_tip(Index vertex) const {
     const auto& v = complex_.vertices[vertex];
     return v.feature.dimension == 1 && std::any_of(v.edges.begin(), v.edges.end(),

@@ -12,7 +12,8 @@ namespace collarmesh::shells {
 
 using Corners = std::array<Point, 3>;
 
-/// The lower bound on the angles of triangles, and the shape that improvement aims at, degrees.
+/// The lower bound on the angles of triangles, and the quality (`shape_of`) that improvement aims at; both in
+/// degrees.
 inline constexpr double least_angle = 20, wanted_shape = 28;
 
 inline Vector area_vector(const Corners& t) { return 0.5 * cross(t[1] - t[0], t[2] - t[0]); }

@@ -47,8 +47,9 @@ class ForcedEdges {
   bool forces(Index a, Index b) const;
   /// Returns the width that forced edges leave to a tet, relative to its longest edge (narrowness_of).
   double narrowness(const std::array<Point, 4>& p, const std::array<Index, 4>& corners) const;
-  /// Returns the smallest dihedral angle that a tet of this narrowness must have, degrees: half of the angle
-  /// whose tangent is the narrowness.
+  /// Returns the lower bound on the dihedral angles of a tet of this narrowness, in degrees: half of the
+  /// angle whose tangent is the narrowness. It applies where it is below the bound for tets without forced
+  /// edges.
   static double smallest_angle(double narrowness);
 
  private:
