@@ -26,6 +26,7 @@ ExitCode check_command(process::Process& process, const CheckArguments& argument
     reading.tolerance = [&](const Plc& plc) {
       return tolerance_of(plc, arguments.mesh.bounds, 0, mesh.order());
     };
+  reading.order = static_cast<int>(mesh.order());
   files::ComplexInput input(arguments.inputs, interruptible(process, std::move(reading)));
   Execution execution;
   execution.cancel = &process.interrupts.flag();

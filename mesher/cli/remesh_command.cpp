@@ -29,6 +29,7 @@ files::ComplexInput read_complex(process::Process& process, const RemeshArgument
   reading.tolerance = [&](const Plc& plc) {
     return tolerance_of(plc, arguments.mesh.bounds, arguments.mesh.size, static_cast<int>(arguments.order));
   };
+  reading.order = static_cast<int>(arguments.order);
   reading.threads = arguments.mesh.threads;
   return files::ComplexInput(arguments.against, interruptible(process, std::move(reading)));
 }

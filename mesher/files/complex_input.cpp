@@ -30,6 +30,7 @@ namespace {
 constexpr double share_of_triangles = 0.1;  // permitted distance of the first triangles from the shape,
                                             // relative to that of the mesh
 constexpr double finest = 4;  // triangles of CAD faces get at most this many times finer than the first ones
+constexpr double finest_below_curves = 16;  // the same where mid-edge nodes would be too far from them
 
 bool may_be_too_coarse(const PlcError& error) {
   return std::all_of(error.faults.begin(), error.faults.end(), [](const PlcFault& fault) {
@@ -111,6 +112,7 @@ InputReading reading_for_mesh(const RunOptions& options, const std::string& form
     reading.tolerance = [&options](const Plc& plc) {
       return tolerance_of(plc, options.mesh.bounds, options.mesh.size, static_cast<int>(options.order));
     };
+  reading.order = static_cast<int>(options.order);
   return reading;
 }
 
@@ -301,17 +303,21 @@ Plc ComplexInput::build_finer(const PlcOptions& options, const RepairOptions& re
 /// Returns the complex with finer triangles on the faces whose triangles are too coarse for the mesh. It must
 /// be valid without repair, have as many regions and hardly worse volumes. Otherwise all faces get finer
 /// triangles, because a wall becomes thinner if only one of its sides gets them. If that fails, too, returns
-/// `plc`. Faces that are `fine` already have the finest triangles.
+/// `plc`. Mid-edge nodes lie on the exact shape, so with elements of second order triangles must be nearer to
+/// it than the tolerance. Faces that are `fine` already have the finest triangles.
 Plc ComplexInput::resolved(Plc plc, const std::set<SoupFace>& fine, const PlcOptions& options,
                            const RepairOptions& repair) {
-  constexpr double margin = 1.5, little = 2e-3;
+  constexpr double margin = 1.5, little = 2e-3, allowed_for_nodes = 4;  // in units of `by`
   if (!reading_.tolerance || built_.repaired.repaired) return plc;
   std::set<SoupFace> faces = fine;
   double finer = fine.empty() ? 1 : finest;
   for (const auto& [patch, by] : coarse_patches(plc, reading_.tolerance(plc))) {
     if (!cad_.measures(plc.patches[patch].file)) continue;  // the patch is not of a CAD file
     faces.emplace(plc.patches[patch].file, plc.patches[patch].tag);
-    finer = std::min(std::max(finer, margin * by), finest);
+    double needed = std::min(margin * by, finest);
+    if (reading_.order == 2)
+      needed = std::max(needed, std::min(margin * by / allowed_for_nodes, finest_below_curves));
+    finer = std::max(finer, needed);
   }
   if (faces.size() == fine.size()) return plc;
   const double most_off = std::max(volume_off(plc), little);

@@ -33,6 +33,7 @@ struct InputReading {
   /// Returns the tolerance of the mesh that will be made of a complex. Triangles of CAD shapes that are too
   /// coarse for it are replaced by finer ones. Empty: none are replaced.
   std::function<SurfaceTolerance(const Plc&)> tolerance = {};
+  int order = 1;  ///< order of the elements of that mesh
   SolidOverlap overlap = SolidOverlap::first;
   unsigned threads = 0;                       ///< maximum number of threads for CAD shapes; 0: all cores
   std::string names = {};                     ///< names of features: the path of a file, or its text; empty:

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <span>
@@ -152,6 +153,40 @@ TEST(ShapeKept, TubesHeedTheLimitOfVertices) {
   EXPECT_EQ(run_pipeline(tube, options).missed(), "");
   options.mesh.max_vertices = 300;
   EXPECT_EQ(run_pipeline(tube, options).result.status, MeshStatus::budget_hit);
+}
+
+/// Returns a curved wall of 80 degrees around the x axis, 12 long.
+PolygonSoup roof(Index edges, double thickness) {
+  constexpr double radius = 6, length = 12, half = 40 * std::numbers::pi / 180;
+  PolygonSoup soup;
+  for (Index i = 0; i <= edges; ++i)
+    for (const double r : {radius - thickness, radius})
+      for (const double x : {0., length}) {
+        const double angle = half * (2. * i / edges - 1);
+        soup.points.push_back({x, r * std::sin(angle), r * std::cos(angle)});
+      }
+  const auto at = [](Index i, Index outer, Index end) { return 4 * i + 2 * outer + end; };
+  const auto add = [&](const std::array<Index, 4>& corners) { soup.add_facet(corners); };
+  for (Index i = 0; i < edges; ++i) {
+    add({at(i, 1, 0), at(i, 1, 1), at(i + 1, 1, 1), at(i + 1, 1, 0)});
+    add({at(i, 0, 0), at(i + 1, 0, 0), at(i + 1, 0, 1), at(i, 0, 1)});
+    add({at(i, 0, 0), at(i, 1, 0), at(i + 1, 1, 0), at(i + 1, 0, 0)});
+    add({at(i, 0, 1), at(i + 1, 0, 1), at(i + 1, 1, 1), at(i, 1, 1)});
+  }
+  add({at(0, 0, 0), at(0, 0, 1), at(0, 1, 1), at(0, 1, 0)});
+  add({at(edges, 0, 0), at(edges, 1, 0), at(edges, 1, 1), at(edges, 0, 1)});
+  return soup;
+}
+
+// Rounding makes flat tets between the rungs for some directions of the diagonals.
+TEST(ShapeKept, ThinWallsFindDiagonalsThatLeaveNoFlatTets) {
+  for (const Index edges : {88, 104}) {
+    PipelineOptions options;
+    options.mesh = with_size(0.72);
+    const SoupPipelineResult made = run_pipeline(std::vector{roof(edges, 0.002)}, options);
+    EXPECT_EQ(made.missed(), "") << edges;
+    EXPECT_LT(made.result.mesh.tets.size(), 11'000U) << edges;
+  }
 }
 
 // A sphere bends in two directions, so its chords remove twice as much as those of a cylinder.

@@ -64,6 +64,7 @@ files::ComplexInput read(const Inputs& inputs, const Options& options, Watch& wa
   reading.tolerance = [&options](const Plc& plc) {
     return tolerance_of(plc, options.mesh.bounds, options.mesh.size, static_cast<int>(options.order));
   };
+  reading.order = static_cast<int>(options.order);
   reading.cancel = &watch.flag();
   reading.stop = [&watch] { watch.stop_if_asked(); };
   files::ComplexInput input(inputs.paths, reading);

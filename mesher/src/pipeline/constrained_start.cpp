@@ -110,24 +110,31 @@ void require_few_misshapen(MeshJob& job) {
 /// the mesh is good: hardly any tet misses its bounds or has a far too long edge, and the limit on vertices
 /// is kept. Vertices on opposite sides of a good mesh face each other, so no further work is needed:
 /// collapses that ignore bounds would do harm. Rounding decides whether all diagonals of the ladders' cells
-/// can be recovered without further points, so tries diagonals along several directions.
+/// can be recovered without further points, so tries diagonals along several directions: the first few, and
+/// the others while very few tets are poor.
 bool is_good_with_ladders(MeshJob& job) {
-  constexpr std::array<Vector, 3> directions{{{0.36, 0.48, 0.8}, {-0.36, 0.48, 0.8}, {0.36, -0.48, 0.8}}};
+  constexpr std::array<Vector, 7> directions{{{0.36, 0.48, 0.8},
+                                              {-0.36, 0.48, 0.8},
+                                              {0.36, -0.48, 0.8},
+                                              {-0.2, 0.55, 0.81},
+                                              {0.55, -0.2, 0.81},
+                                              {0.81, 0.2, -0.55},
+                                              {0.2, -0.81, 0.55}}};
+  constexpr std::size_t always = 3, very_few = 5;
   const double size = smallest_size(job.options.mesh, job.plc->bounds.diagonal());
   if (!may_have_ladders(job, size)) return false;
   std::optional<TetMesh> best;
-  std::size_t least = 0;
-  for (const Vector& direction : directions) {
-    const Plc divided = divided_strips(job, size, direction);
+  std::size_t least = none;
+  for (std::size_t i = 0; i < directions.size() && (i < always || least <= very_few); ++i) {
+    const Plc divided = divided_strips(job, size, directions[i]);
     if (divided.points.size() == job.plc->points.size() || exceeds_vertices(job, divided.points.size()))
       return false;
     try {
       const std::size_t poor = fill_ladders(job, divided);
       TetMesh& mesh = job.made.result.mesh;
-      if (tets_per_poor * poor > mesh.tets.size() || !keeps_lengths(mesh, size) ||
-          exceeds_vertices(job, mesh.points.size()))
+      if (poor == mesh.tets.size() || !keeps_lengths(mesh, size) || exceeds_vertices(job, mesh.points.size()))
         break;
-      if (best && poor >= least) continue;
+      if (poor >= least || tets_per_poor * poor > mesh.tets.size()) continue;
       least = poor;
       best = std::move(mesh);
       if (poor == 0) break;
