@@ -30,7 +30,7 @@ namespace {
 constexpr double share_of_triangles = 0.1;  // permitted distance of the first triangles from the shape,
                                             // relative to that of the mesh
 constexpr double finest = 4;  // triangles of CAD faces get at most this many times finer than the first ones
-constexpr double finest_below_curves = 16;  // the same where mid-edge nodes would be too far from them
+constexpr double finest_for_nodes = 8;  // the same where mid-edge nodes would be too far from them
 
 bool may_be_too_coarse(const PlcError& error) {
   return std::all_of(error.faults.begin(), error.faults.end(), [](const PlcFault& fault) {
@@ -316,16 +316,19 @@ Plc ComplexInput::resolved(Plc plc, const std::set<SoupFace>& fine, const PlcOpt
     faces.emplace(plc.patches[patch].file, plc.patches[patch].tag);
     double needed = std::min(margin * by, finest);
     if (reading_.order == 2)
-      needed = std::max(needed, std::min(margin * by / allowed_for_nodes, finest_below_curves));
+      needed = std::max(needed, std::min(margin * by / allowed_for_nodes, finest_for_nodes));
     finer = std::max(finer, needed);
   }
   if (faces.size() == fine.size()) return plc;
   const double most_off = std::max(volume_off(plc), little);
   const bool noisy = has_noise(plc, repair);
   Built coarse = std::exchange(built_, {});
-  for (const bool everywhere : {false, true}) {
+  std::vector<std::pair<double, bool>> ways{{finer, false}};
+  if (finer > finest) ways.emplace_back(finest, false);
+  ways.emplace_back(std::min(finer, finest), true);
+  for (const auto& [by, everywhere] : ways) {
     try {
-      everywhere ? tessellate(finer) : tessellate(finer, faces);
+      everywhere ? tessellate(by) : tessellate(by, faces);
       Plc finer_plc = build_finer(options, repair, noisy);
       if (!built_.repaired.repaired && finer_plc.regions.size() == plc.regions.size() &&
           volume_off(finer_plc) <= most_off)

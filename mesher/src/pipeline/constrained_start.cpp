@@ -109,9 +109,10 @@ void require_few_misshapen(MeshJob& job) {
 /// Divides strips of the complex like ladders, if it has any, and fills it with tetrahedra. Returns whether
 /// the mesh is good: hardly any tet misses its bounds or has a far too long edge, and the limit on vertices
 /// is kept. Vertices on opposite sides of a good mesh face each other, so no further work is needed:
-/// collapses that ignore bounds would do harm. Rounding decides whether all diagonals of the ladders' cells
-/// can be recovered without further points, so tries diagonals along several directions: the first few, and
-/// the others while very few tets are poor.
+/// collapses that ignore bounds would do harm. Rounding decides which diagonals of the ladders' cells leave
+/// flat tets. So tries diagonals along three directions, and along others if at most five tets of the best
+/// mesh so far are poor. Stops at a mesh without poor tets, or when a try is given up before coarsening, has
+/// too long edges or exceeds the limit on vertices. A time limit does not lose the best mesh.
 bool is_good_with_ladders(MeshJob& job) {
   constexpr std::array<Vector, 7> directions{{{0.36, 0.48, 0.8},
                                               {-0.36, 0.48, 0.8},
@@ -121,29 +122,45 @@ bool is_good_with_ladders(MeshJob& job) {
                                               {0.81, 0.2, -0.55},
                                               {0.2, -0.81, 0.55}}};
   constexpr std::size_t always = 3, very_few = 5;
+  constexpr double share_of_time = 0.5;
   const double size = smallest_size(job.options.mesh, job.plc->bounds.diagonal());
   if (!may_have_ladders(job, size)) return false;
+  MeshResult& result = job.made.result;
   std::optional<TetMesh> best;
   std::size_t least = none;
-  for (std::size_t i = 0; i < directions.size() && (i < always || least <= very_few); ++i) {
+  bool goes_on = true;
+  const auto try_with = [&](const Plc& divided) {
+    const std::size_t poor = fill_ladders(job, divided);
+    TetMesh& mesh = result.mesh;
+    goes_on =
+        poor < mesh.tets.size() && keeps_lengths(mesh, size) && !exceeds_vertices(job, mesh.points.size());
+    if (!goes_on || poor >= least || tets_per_poor * poor > mesh.tets.size()) return;
+    goes_on = poor > 0;
+    least = poor;
+    best = std::move(mesh);
+  };
+  for (std::size_t i = 0; i < directions.size() && goes_on && (i < always || least <= very_few); ++i) {
     const Plc divided = divided_strips(job, size, directions[i]);
     if (divided.points.size() == job.plc->points.size() || exceeds_vertices(job, divided.points.size()))
       return false;
+    const MeshStatus status = result.status;
     try {
-      const std::size_t poor = fill_ladders(job, divided);
-      TetMesh& mesh = job.made.result.mesh;
-      if (poor == mesh.tets.size() || !keeps_lengths(mesh, size) || exceeds_vertices(job, mesh.points.size()))
-        break;
-      if (poor >= least || tets_per_poor * poor > mesh.tets.size()) continue;
-      least = poor;
-      best = std::move(mesh);
-      if (poor == 0) break;
+      if (best)
+        job.control.attempt(share_of_time, [&] { try_with(divided); });
+      else
+        try_with(divided);
     } catch (const PlcError&) {
       continue;  // points of these ladders cannot be separated
+    } catch (const Ended&) {
+      if (!best || result.status == MeshStatus::cancelled) throw;
+      job.made.coarsening.reset();
+      result.status = status;
+      result.message.clear();
+      break;
     }
   }
   if (!best) return false;
-  job.made.result.mesh = std::move(*best);
+  result.mesh = std::move(*best);
   return true;
 }
 

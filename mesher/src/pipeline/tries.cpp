@@ -172,6 +172,8 @@ void Tries::mesh_any_repaired(SoupPipelineResult& all) {
       return;
     }
     maker_.make_anyhow(all.plc, why);
+  } else if (end == End::exploded) {
+    job_.budget.bound(all.repair.wrapped ? Ways::none : Ways::others);
   }
   try_seeds(all.plc);
 }

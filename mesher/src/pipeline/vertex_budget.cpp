@@ -10,7 +10,7 @@ namespace collarmesh::pipeline {
 void VertexBudget::bound(Ways ways) {
   const bool repairs = given_.repair.mode != RepairMode::off && !given_.repair.wrap_at_once;
   ways_ = repairs || may_start_constrained(given_) ? ways : Ways::none;
-  is_known_ = false;
+  is_known_ = is_tight_ = false;
 }
 
 void VertexBudget::tighten() {
@@ -23,7 +23,7 @@ void VertexBudget::tighten() {
 void VertexBudget::find(const Plc& plc, const PipelineOptions& options) {
   // Bodies far thinner than the size really need many vertices.
   constexpr std::size_t times_without_other_ways = 2, least_without_other_ways = 300'000;
-  constexpr std::size_t by_tightening = 4;  // parts whose refinement does not explode need no more
+  constexpr std::size_t by_tightening = 4;  // real parts need no more (vertex_bound.cpp)
   if (is_known_) return;
   const std::size_t given = given_.mesh.max_vertices;
   is_known_ = true;

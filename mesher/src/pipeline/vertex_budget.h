@@ -18,7 +18,7 @@ class VertexBudget {
   explicit VertexBudget(const PipelineOptions& given) : given_(given) {}
 
   /// Bounds the number of vertices of further refinements, less tightly if there is no other way to make a
-  /// mesh. The bound is computed when it is needed.
+  /// mesh. The bound is computed when it is needed. Undoes `tighten`.
   void bound(Ways ways);
 
   /// Lowers the bound for further refinements while there are other ways, because one has exploded.
