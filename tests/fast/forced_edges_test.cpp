@@ -180,5 +180,34 @@ TEST(ForcedEdges, ThinTetsMayBeAsSharpAsTheyLeaveThem) {
   }
 }
 
+TEST(ForcedEdges, OnlyVeryNarrowTetsAreJudgedByThem) {
+  constexpr double deep = 0.03, good_enough = 2, smallest_angle = 8, radians = std::numbers::pi / 180;
+  const OppositeFaces faces;
+  TetMesh mesh;
+  mesh.points.resize(4);
+  const auto forced =
+      std::make_shared<const ForcedEdges>(faces.with({faces.below, faces.below, faces.below, faces.above}));
+  const remeshing::ThinShape shape(faces.plc, mesh, smallest_angle, 0, forced);
+  unsigned judged_by_edges = 0, others = 0;
+  for (double height = 0.07; height < 0.1; height += 1e-5) {
+    const Corners p{Point{0, 0, 0}, Point{1, 0, 0}, Point{0, 1, 0}, Point{0, 0, height}};
+    const remeshing::ExtremeCosines cosines = remeshing::extreme_cosines(p);
+    const auto sine_of = [&](double degrees) {
+      return std::sin((degrees + 2 * remeshing::ThinShape::rounding) * radians);
+    };
+    const double smallest = remeshing::squared_sine(cosines.smallest_angle),
+                 edges_permit = sine_of(ForcedEdges::smallest_angle(forced->narrowness(p, four))),
+                 usual = smallest / (sine_of(smallest_angle) * sine_of(smallest_angle));
+    const bool by_edges = edges_permit < deep;
+    ++(by_edges ? judged_by_edges : others);
+    const double expected =
+        by_edges && usual < good_enough
+            ? std::max(usual, std::min(good_enough, smallest / (edges_permit * edges_permit)))
+            : usual;
+    EXPECT_DOUBLE_EQ(shape.squared_margins(cosines, p, four).of_smallest, expected) << height;
+  }
+  EXPECT_GT(std::min(judged_by_edges, others), 100U);
+}
+
 }  // namespace
 }  // namespace collarmesh::forced_edges_test

@@ -87,8 +87,14 @@ TEST(VertexBudget, IsTightAfterAnExplosionWhileThereAreOtherWays) {
   EXPECT_EQ(usual, bound(plc, given.mesh));
   budget.tighten();
   EXPECT_EQ(found(), usual / 4);
+  budget.bound(pipeline::Ways::constrained);
+  EXPECT_EQ(found(), std::max<std::size_t>(usual, 100'000));
+  budget.compare_with(usual);
+  EXPECT_EQ(found(), std::max<std::size_t>(usual, 100'000));
+  budget.compare_with(1);
+  EXPECT_EQ(found(), 100'000U);
   budget.bound(pipeline::Ways::none);
-  EXPECT_GE(found(), 2 * usual);
+  EXPECT_GE(found(), std::max<std::size_t>(2 * usual, 300'000));
 }
 
 }  // namespace

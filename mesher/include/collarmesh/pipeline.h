@@ -118,12 +118,12 @@ class ComplexSource {
 /// is asked for and a region's volume is off by more than 2%, a mesh that passes is made again, nearer to the
 /// surfaces, at most twice and each time in at most half of the time that the time limit leaves. A refinement
 /// ends early at a bound on vertices, so that coarser repairs can be tried; these must lose no body, region,
-/// name or tag except numbers of CAD faces. If none of them does better, the first complex is meshed within
-/// the budgets, or, without budgets, with up to twice as many vertices as the first try took; if that fails,
-/// from its constrained tetrahedra (`Start`). `check.notes` lists the attempts. `execution.progress` is also
-/// called at the beginning of each stage (`ProgressReport::begins`); its fraction covers all stages. If
-/// cancelled or out of time, the result has that status and no mesh. Throws PlcError for facets that cannot
-/// be repaired to form a complex, OptionError for conflicting options and for sizes of unknown tags.
+/// name or tag except numbers of CAD faces. If none of them does better, the first complex is meshed from its
+/// constrained tetrahedra (`Start`) or refined within larger bounds; of two meshes that miss guarantees the
+/// one that misses them at fewer of its tets is kept. `check.notes` lists the attempts. `execution.progress`
+/// is also called at the beginning of each stage (`ProgressReport::begins`); its fraction covers all stages.
+/// If cancelled or out of time, the result has that status and no mesh. Throws PlcError for facets that
+/// cannot be repaired to form a complex, OptionError for conflicting options and for sizes of unknown tags.
 SoupPipelineResult run_pipeline(ComplexSource& source, const PipelineOptions& options = {},
                                 const Execution& execution = {});
 

@@ -11,6 +11,7 @@
 #include "coarsen/coarsen_edited.h"
 #include "coarsen/failed_repairs.h"
 #include "coarsen/proposals.h"
+#include "coarsen/repair_chances.h"
 #include "coarsen/target_sizes.h"
 #include "collarmesh/error.h"
 #include "common/cell_shapes.h"
@@ -134,6 +135,7 @@ class Coarsening {
     int rank;  // rank of the length of its shortest edge
     Index vertex;
     bool worth_repairs;
+    std::size_t place = 0;  // in the order of trials
   };
 
   struct ShortEdge {
@@ -141,8 +143,8 @@ class Coarsening {
     Index end;
   };
 
-  // Returns the vertices with a short edge where something has changed since they were last tried in the same
-  // way, with or without repairs; shortest edges first.
+  // Returns the vertices with a short edge where something has changed since they were last tried, or left
+  // out by RepairChances, in the same way, with or without repairs; shortest edges first.
   std::vector<Candidate> find_candidates(bool repair) const {
     const std::uint32_t last = repair ? std::min(last_pass_, last_repairs_) : last_pass_;
     const auto ends = found_at_changed<ShortEdge>(last, [&](Index tet, std::vector<ShortEdge>& found) {
@@ -154,7 +156,9 @@ class Coarsening {
       if (changes_.at(v) >= (repairs ? last_repairs_ : last_pass_))
         candidates.push_back({static_cast<int>(ranks_of_lengths * shortest), v, repairs});
     }
-    return in_order(std::move(candidates));
+    candidates = in_order(std::move(candidates));
+    for (std::size_t i = 0; i < candidates.size(); ++i) candidates[i].place = i;
+    return candidates;
   }
 
   // Returns each end once, with its shortest edge; sorted by end.
@@ -202,6 +206,7 @@ class Coarsening {
     const std::vector<Candidate> candidates = find_candidates(repair);
     last_pass_ = changes_.advance();
     if (repair) last_repairs_ = last_pass_;
+    chances_ = {};
     const std::size_t before = tets_;
     steps_ = 0;
     return speculation_.for_each<VertexProposal>(
@@ -210,15 +215,17 @@ class Coarsening {
                  propose(proposer, candidate, found);
                },
                [&](const Candidate& candidate, const VertexProposal& found, std::uint32_t begun) {
-                 return changes_.at(candidate.vertex) < begun && !changes_.any_since(begun, found.read) &&
-                        edited_.curve_can_spare(found.change) &&
+                 const bool lacks_repairs =
+                     candidate.worth_repairs && !found.with_repairs && chances_.is_due(candidate.place);
+                 return !lacks_repairs && changes_.at(candidate.vertex) < begun &&
+                        !changes_.any_since(begun, found.read) && edited_.curve_can_spare(found.change) &&
                         std::ranges::all_of(found.to_repair, [&](const Change& change) {
                           return edited_.curve_can_spare(change);
                         });
                },
                [&](const Candidate& candidate, VertexProposal& found) {
                  if (stopped()) return false;
-                 collapse(candidate.vertex, found);
+                 collapse(candidate, found);
                  return true;
                }) &&
            worthwhile(before);
@@ -226,16 +233,19 @@ class Coarsening {
 
   void propose(Proposer& proposer, const Candidate& candidate, VertexProposal& found) const {
     const Index v = candidate.vertex;
-    if (candidate.worth_repairs)
+    const bool repairs = candidate.worth_repairs && chances_.is_due(candidate.place);
+    if (repairs)
       if (const auto looked_at = failed_.still_fails(v, changes_); !looked_at.empty()) {
         found = {};
+        found.with_repairs = true;
         found.read.assign(looked_at.begin(), looked_at.end());
         return;
       }
     if (complex().in_use(v))
-      proposer.collapses(v, candidate.worth_repairs, found);
+      proposer.collapses(v, repairs, found);
     else
       found = {};
+    found.with_repairs = repairs;
   }
 
   bool worthwhile(std::size_t before) const {
@@ -250,7 +260,8 @@ class Coarsening {
     return report_.cancelled;
   }
 
-  void collapse(Index vertex, VertexProposal& found) {
+  void collapse(const Candidate& candidate, VertexProposal& found) {
+    const Index vertex = candidate.vertex;
     if (!found.change.is_none()) {
       forget_touched();
       apply(std::move(found.change));
@@ -258,11 +269,12 @@ class Coarsening {
       ++report_.contracted_edges;
       return;
     }
-    if (found.to_repair.empty()) return;
+    if (found.to_repair.empty() || !chances_.is_due(candidate.place)) return;
     looked_at_ = found.read;
     looked_at_.push_back(vertex);
     for (Change& change : found.to_repair)
-      if (collapse_and_repair(std::move(change), found.floor)) return;
+      if (collapse_and_repair(std::move(change), found.floor)) return chances_.note_success();
+    chances_.note_failure();
     // Record the failure only if it depends on the tets around alone, and all of these are known. Whether an
     // edge of a curve can be spared depends on more, and not all tets at a pinched vertex are found.
     if (mesh().features[vertex].dimension > 1 &&
@@ -530,6 +542,7 @@ class Coarsening {
   std::vector<Index> looked_at_;         // vertices whose tets the trials of one vertex examined
   std::vector<Index> star_;
   FailedRepairs failed_;
+  RepairChances chances_;
   std::vector<double> trial_qualities_;  // by tet, for tets that a trial changed
   std::vector<double> known_qualities_;  // by tet; infinite where good enough, NaN if not known
   CoarsenReport report_;

@@ -15,6 +15,7 @@ struct VertexProposal {
   Change change;  ///< a collapse that the shapes of tets allow, too, onto the nearest possible
                   ///< neighbour; or none
   std::vector<Change> to_repair;  ///< collapses, at most one onto each neighbour, that leave tets to improve
+  bool with_repairs = false;      ///< whether collapses that need repairs were looked for
   double floor = 0;               ///< repairs must leave no changed tet worse than this
   /// The proposal depends on the tets at the vertex and at these vertices. Empty for a vertex inside a
   /// region, because there the link condition is not checked.

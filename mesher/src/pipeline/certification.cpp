@@ -20,6 +20,10 @@ bool misses_volumes_only(const CheckReport& check) {
   });
 }
 
+double findings_per_tet(const PipelineResult& made) {
+  return static_cast<double>(made.check.findings_total) / static_cast<double>(made.result.mesh.tets.size());
+}
+
 std::size_t count_misshapen(const MeshJob& job, const TetMesh& mesh) {
   Bounds promised = job.bounds();
   promised.tolerance = job.refined_with.bounds.tolerance;

@@ -13,6 +13,9 @@ bool is_about_shape(const Finding& finding);
 /// smaller surface distance.
 bool misses_volumes_only(const CheckReport& check);
 
+/// Returns the number of findings of a checked mesh, divided by its number of tets.
+double findings_per_tet(const PipelineResult& made);
+
 /// Returns the number of findings on shapes of tets, plus 1000 times the number of findings on nodes, edges
 /// and faces of periodic pairs that have no image.
 std::size_t count_misshapen(const MeshJob& job, const TetMesh& mesh);

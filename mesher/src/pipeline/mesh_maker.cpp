@@ -11,6 +11,7 @@
 #include "adapt/bring_to_size.h"
 #include "collarmesh/error.h"
 #include "common/disjoint_sets.h"
+#include "common/sort_uniquely.h"
 #include "common/thread_limit.h"
 #include "periodic/make_periodic.h"
 #include "periodic/tolerance_across.h"
@@ -47,6 +48,14 @@ void raise_order(MeshJob& job) {
       .exact = job.options.exact, .bounds = job.bounds(), .threads = job.options.mesh.threads};
   job.made.second_order = make_second_order(job.made.result.mesh, *job.plc, options, job.execution());
   if (job.made.second_order.cancelled) job.control.stop();
+}
+
+/// Returns the number of vertices without mid-edge nodes.
+std::size_t corner_count(const TetMesh& mesh) {
+  std::vector<Index> corners;
+  for (const auto& tet : mesh.tets) corners.insert(corners.end(), tet.begin(), tet.end());
+  sort_uniquely(corners);
+  return corners.size();
 }
 
 /// Unites the two smooth patches of each wall, layer or shell. Volumes that chords cut off on both sides
@@ -91,6 +100,7 @@ void MeshMaker::make(const Plc& plc, std::uint64_t seed) {
   project(job_);
   raise_order(job_);
   certify(job_, tolerance(plc));
+  if (job_.start != Start::constrained) is_constrained_ = false;
 }
 
 void MeshMaker::set_up(const Plc& plc, std::uint64_t seed) {
@@ -229,37 +239,84 @@ bool MeshMaker::replace_refined() {
   return false;
 }
 
-void MeshMaker::make_anyhow(const Plc& plc, const std::string& why) {
-  if (!take_constrained(plc, why)) make_or_take_constrained(plc, why);
+void MeshMaker::make_anyhow(const Plc& plc, const std::string& why, std::size_t tried) {
+  constexpr std::size_t few = 20;  // further seeds may mend this many findings
+  if (take_constrained(plc, why)) return;
+  const std::optional<SurfaceTolerance> nearer = nearer_;
+  std::optional<PipelineResult> constrained;
+  if (has_few_triangles(plc)) constrained = from_constrained(plc, why, Hope::any);
+  std::optional<SurfaceTolerance> nearer_of_constrained = std::exchange(nearer_, nearer);
+  const auto use = [&] {
+    nearer_ = nearer_of_constrained;
+    use_constrained(std::move(*constrained));
+  };
+  if (constrained && constrained->guarantees_hold()) return use();
+  if (may_start_constrained(job_.given)) job_.budget.bound(Ways::constrained);
+  job_.budget.compare_with(constrained_vertices_);
+  const bool is_refined = refines_within_budgets(plc, tried, constrained.has_value());
+  job_.budget.bound(Ways::none);
+  if (!is_refined && !constrained) {
+    constrained = from_constrained(plc, why, Hope::any);
+    if (!constrained) throw Ended();
+    nearer_of_constrained = nearer_;
+  }
+  if (!is_refined || (constrained && job_.made.check.findings_total > few &&
+                      findings_per_tet(*constrained) < findings_per_tet(job_.made)))
+    use();
 }
 
-/// Meshes a complex by refinement; if that hits the bound on vertices, from constrained tetrahedra. `why` is
-/// the reason that a note gives for the latter.
-void MeshMaker::make_or_take_constrained(const Plc& plc, const std::string& why) {
+void MeshMaker::use_constrained(PipelineResult constrained) {
+  job_.made = std::move(constrained);
+  job_.promised = job_.bounds();
+  job_.promised.tolerance = tolerance(*job_.plc);
+  is_constrained_ = true;
+  constrained_.reset();
+}
+
+/// Refines a complex if more vertices are allowed than `tried`. Returns whether there is a mesh. If there is
+/// another mesh, takes at most half of the remaining time.
+bool MeshMaker::refines_within_budgets(const Plc& plc, std::size_t tried, bool has_mesh) {
+  constexpr double share_of_time = 0.5;
+  set_up(plc, job_.given.mesh.seed);
+  if (const std::size_t most = job_.budget.most(); most > 0 && most <= tried) return false;
+  const auto refine_and_reshape = [&] { make(plc, job_.given.mesh.seed); };
+  const auto fails = [&] {
+    if (job_.made.result.status == MeshStatus::cancelled || !(has_mesh || job_.hit_bound())) throw;
+    return false;
+  };
   try {
-    return make(plc, job_.given.mesh.seed);
+    if (has_mesh)
+      job_.control.attempt(share_of_time, refine_and_reshape);
+    else
+      refine_and_reshape();
+    return true;
   } catch (const Ended&) {
-    if (!job_.hit_bound()) throw;
-    std::optional<PipelineResult> constrained = from_constrained(plc, why, Hope::any);
-    if (!constrained) throw;
-    is_constrained_ = true;
-    job_.made = std::move(*constrained);
+    return fails();
+  } catch (const PlcError&) {
+    return fails();
+  } catch (const std::bad_alloc&) {
+    return fails();
   }
 }
 
-bool MeshMaker::may_take_constrained(const Plc& plc) const {
+bool MeshMaker::has_few_triangles(const Plc& plc) {
   constexpr std::size_t most_triangles = 12'000;  // with more triangles, other ways are faster
-  return plc.triangles.size() <= most_triangles && hopeless_ != &plc;
+  return plc.triangles.size() <= most_triangles;
+}
+
+bool MeshMaker::may_take_constrained(const Plc& plc) const {
+  return has_few_triangles(plc) && hopeless_ != &plc;
 }
 
 bool MeshMaker::take_constrained(const Plc& plc, const std::string& why, Lengths lengths) {
   if (!may_take_constrained(plc)) return false;
   const std::optional<SurfaceTolerance> nearer = nearer_;
   std::optional<PipelineResult> constrained = from_constrained(plc, why, Hope::good);
-  is_constrained_ = constrained && constrained->guarantees_hold() &&
-                    (lengths == Lengths::any ||
-                     keeps_lengths(constrained->result.mesh,
-                                   smallest_size(job_.options.mesh, job_.plc->bounds.diagonal())));
+  const bool has_lengths =
+      constrained && (lengths == Lengths::any ||
+                      keeps_lengths(constrained->result.mesh,
+                                    smallest_size(job_.options.mesh, job_.plc->bounds.diagonal())));
+  is_constrained_ = has_lengths && constrained->guarantees_hold();
   hopeless_ = is_constrained_ ? nullptr : &plc;
   constrained_.reset();
   if (is_constrained_) {
@@ -267,6 +324,7 @@ bool MeshMaker::take_constrained(const Plc& plc, const std::string& why, Lengths
     constrained_ = Constrained{why, lengths};
   } else {
     nearer_ = nearer;
+    if (has_lengths) nearly_good_ = std::move(constrained);
   }
   return is_constrained_;
 }
@@ -306,8 +364,10 @@ std::optional<PipelineResult> MeshMaker::from_constrained(const Plc& plc, const 
     try_seeds_of_constrained(plc);
     made.check.notes.push_back(
         fmt::format("begun with constrained tetrahedra, because without them: {}", why));
+    constrained_vertices_ = corner_count(made.result.mesh);
     if (std::ranges::all_of(made.check.findings, is_about_shape)) found = std::move(made);
   } catch (const Hopeless&) {
+    constrained_vertices_ = corner_count(made.result.mesh);
     found.reset();
   } catch (const PlcError&) {
     found.reset();
@@ -361,6 +421,8 @@ void MeshMaker::take_new_complex() {
   no_sheaths_ = nullptr;
   hopeless_ = nullptr;
   constrained_.reset();
+  nearly_good_.reset();
+  constrained_vertices_ = 0;
 }
 
 void MeshMaker::move_to(const Plc& plc) {

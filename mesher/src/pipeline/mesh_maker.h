@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "constrained/sheathed_rods.h"
@@ -34,9 +35,11 @@ class MeshMaker {
   void make(const Plc& plc, std::uint64_t seed);
 
   /// Meshes a complex when other ways have failed: from its constrained tetrahedra if that keeps every
-  /// guarantee; else by refinement within the budgets; else from constrained tetrahedra even if guarantees
-  /// are missed.
-  void make_anyhow(const Plc& plc, const std::string& why);
+  /// guarantee; else by refinement, if more vertices are allowed than `tried`, at which a refinement of this
+  /// complex has ended; else, or if the refined mesh misses guarantees at more of its tets, from constrained
+  /// tetrahedra that need only keep the guarantees that do not concern shapes. `why` is the reason that a
+  /// note gives for constrained tetrahedra.
+  void make_anyhow(const Plc& plc, const std::string& why, std::size_t tried);
 
   /// Meshes a complex from its constrained tetrahedra. Returns nothing if there are none, if the options ask
   /// for another start, if the mesh misses guarantees other than bounds on shapes or, with Hope::good, if
@@ -50,6 +53,15 @@ class MeshMaker {
   /// Uses a mesh made from the constrained tetrahedra if it keeps every guarantee and, if `lengths` asks for
   /// it, the target lengths. Returns whether it is used. Tries each complex only once.
   bool take_constrained(const Plc& plc, const std::string& why, Lengths lengths = Lengths::any);
+
+  /// Returns the last mesh that `take_constrained` did not use although it misses only few bounds on shapes,
+  /// if there was one since the last call.
+  std::optional<PipelineResult> nearly_good() { return std::exchange(nearly_good_, std::nullopt); }
+  /// Returns the number of vertices of the last mesh made from constrained tetrahedra of this complex, also
+  /// of one that was given up; 0: there is none.
+  std::size_t constrained_vertices() const { return constrained_vertices_; }
+  /// Uses a mesh made from constrained tetrahedra.
+  void use_constrained(PipelineResult constrained);
 
   /// Makes sure that the constrained tetrahedra of this complex are not tried unless all else fails.
   void give_up_constrained(const Plc& plc) { hopeless_ = &plc; }
@@ -94,7 +106,8 @@ class MeshMaker {
   bool may_take_constrained(const Plc& plc) const;
   bool is_far_too_fine() const;
   bool replace_refined();
-  void make_or_take_constrained(const Plc& plc, const std::string& why);
+  bool refines_within_budgets(const Plc& plc, std::size_t tried, bool has_mesh);
+  static bool has_few_triangles(const Plc& plc);
   const SurfaceTolerance& tolerance(const Plc& plc);
   SurfaceTolerance tolerance(const Plc& plc, int order) const;
 
@@ -104,8 +117,10 @@ class MeshMaker {
   Fineness fineness_ = Fineness::any;
   Hope hope_ = Hope::any;
   bool was_far_too_fine_ = false;
-  bool is_constrained_ = false;                // whether the kept mesh started from constrained tetrahedra
-  std::optional<Constrained> constrained_;     // how `take_constrained` made the kept mesh
+  bool is_constrained_ = false;             // whether the kept mesh started from constrained tetrahedra
+  std::optional<Constrained> constrained_;  // how `take_constrained` made the kept mesh
+  std::optional<PipelineResult> nearly_good_;
+  std::size_t constrained_vertices_ = 0;
   const Plc* no_rods_ = nullptr;               // the complex whose rods had no good mesh
   const Plc* no_sheaths_ = nullptr;            // the complex whose rods inside regions had no good mesh
   const Plc* hopeless_ = nullptr;              // the complex whose constrained tetrahedra are not tried

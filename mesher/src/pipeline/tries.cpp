@@ -83,7 +83,7 @@ void Tries::mesh(const Plc& plc) {
   if (end == End::refused) std::rethrow_exception(error);
   if (end == End::exploded) {
     job_.budget.bound(Ways::none);
-    maker_.make_anyhow(plc, why);
+    maker_.make_anyhow(plc, why, exploded_at_);
   }
   if (job_.start == Start::constrained)
     maker_.try_seeds_of_constrained(plc);
@@ -119,6 +119,7 @@ void Tries::mesh_any_repaired(SoupPipelineResult& all) {
   if (end == End::holds) return;
   const std::vector<RepairOptions> repairs = repairs_after(end, all);
   if (end == End::exploded) job_.budget.tighten();
+  const bool gave_up_constrained = maker_.has_given_up_constrained(all.plc);
   bool has_mesh = end == End::missed, built_last = true;
   std::optional<Point> place;
   // If places far thinner than the sizes spoil the mesh, a change at any of them may help.
@@ -158,6 +159,7 @@ void Tries::mesh_any_repaired(SoupPipelineResult& all) {
   if (!built_last) {
     try {
       build(current, all);  // so that the source built this complex last
+      if (gave_up_constrained && !has_mesh) maker_.give_up_constrained(all.plc);
     } catch (const PlcError&) {
       if (!has_mesh) throw;
       return;
@@ -171,7 +173,7 @@ void Tries::mesh_any_repaired(SoupPipelineResult& all) {
       made = std::move(*constrained);
       return;
     }
-    maker_.make_anyhow(all.plc, why);
+    maker_.make_anyhow(all.plc, why, exploded_at_);
   } else if (end == End::exploded) {
     job_.budget.bound(all.repair.wrapped ? Ways::none : Ways::others);
   }
@@ -219,10 +221,14 @@ std::pair<Tries::End, std::string> Tries::attempt_simplest(RepairOptions& repair
   maker_.set_fineness(Fineness::as_asked);
   auto tried = attempt(all.plc, error);
   bool gave_up = false, better = false;
+  std::optional<PipelineResult> nearly_good;
+  std::size_t constrained_vertices = 0;
   if (tried.first == End::too_fine) {
     better = maker_.take_constrained(all.plc, "thin features take far more vertices than the sizes ask for",
                                      MeshMaker::Lengths::kept);
     gave_up = maker_.has_given_up_constrained(all.plc);
+    nearly_good = maker_.nearly_good();
+    constrained_vertices = maker_.constrained_vertices();
     if (!better) better = overlay_thin_features(repair, all, most_asked_for_);
   }
   maker_.set_fineness(Fineness::any);
@@ -230,7 +236,23 @@ std::pair<Tries::End, std::string> Tries::attempt_simplest(RepairOptions& repair
   if (tried.first != End::too_fine) return tried;
   build(repair, all);  // so that the source built this complex last
   if (gave_up) maker_.give_up_constrained(all.plc);
-  return attempt(all.plc, error);
+  job_.budget.compare_with(constrained_vertices);
+  tried = attempt(all.plc, error);
+  if (tried.first == End::missed && uses_if_better(std::move(nearly_good))) tried.second = job_.made.missed();
+  return tried;
+}
+
+/// Uses a mesh made from constrained tetrahedra if it misses guarantees at far fewer of its tets than the
+/// mesh at hand, which further seeds or smaller tolerances would hardly mend. Returns whether it does.
+bool Tries::uses_if_better(std::optional<PipelineResult> constrained) {
+  constexpr double far_fewer = 0.1;
+  constexpr std::size_t few = 20;
+  const CheckReport& check = job_.made.check;
+  if (!constrained || check.findings_total <= few || misses_volumes_only(check) ||
+      findings_per_tet(*constrained) >= far_fewer * findings_per_tet(job_.made))
+    return false;
+  maker_.use_constrained(std::move(*constrained));
+  return true;
 }
 
 bool Tries::may_overlay() const {
@@ -292,7 +314,7 @@ std::pair<Tries::End, std::string> Tries::attempt(const Plc& plc, std::exception
     return {job_.made.guarantees_hold() ? End::holds : End::missed, job_.made.missed()};
   } catch (const Ended&) {
     if (!job_.hit_bound()) throw;
-    has_exploded_ = true;
+    exploded_at_ = job_.budget.most();
     return {End::exploded, describe_explosion(plc, job_.budget.most(), job_.made.result.where)};
   } catch (const FarTooFine& e) {
     most_asked_for_ = e.most;
@@ -436,7 +458,7 @@ bool Tries::may_keep_volumes() const {
   constexpr std::size_t most_tets = 100'000;
   const PipelineOptions& given = job_.given;
   return given.order == 1 && given.start != Start::constrained && !(given.mesh.bounds.distance > 0) &&
-         !given.mesh.bounds.tolerance && !given.layers.any() && !given.periodic.any() && !has_exploded_ &&
+         !given.mesh.bounds.tolerance && !given.layers.any() && !given.periodic.any() && exploded_at_ == 0 &&
          (maker_.depends_on_seed() || maker_.prefers_constrained()) && job_.made.guarantees_hold() &&
          job_.made.result.mesh.tets.size() <= most_tets;
 }

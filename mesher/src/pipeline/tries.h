@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <exception>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -40,6 +41,7 @@ class Tries {
     refused    ///< no collar fits between features
   };
 
+  bool uses_if_better(std::optional<PipelineResult> constrained);
   std::string repair_sharp_creases(RepairOptions& repair, SoupPipelineResult& all);
   std::pair<End, std::string> attempt_simplest(RepairOptions& repair, SoupPipelineResult& all,
                                                std::exception_ptr& error);
@@ -71,7 +73,7 @@ class Tries {
   ComplexSource* source_;
   MeshMaker maker_;
   std::size_t most_asked_for_ = 0;  // number of vertices above which a refinement counted as too fine
-  bool has_exploded_ = false;
+  std::size_t exploded_at_ = 0;  // number of vertices at which the first refinement exploded; 0: it did not
   // The seed and the treatment of narrow cells that made the kept mesh.
   std::uint64_t seed_;
   NarrowCells narrow_cells_ = NarrowCells::bounded_if_cheap;

@@ -8,8 +8,9 @@
 
 namespace collarmesh::pipeline {
 
-/// Whether there are other ways to make a mesh if a refinement explodes.
-enum class Ways { others, none };
+/// The other ways to make a mesh if a refinement explodes: further repairs and starts, only constrained
+/// tetrahedra of any quality, or none.
+enum class Ways { others, constrained, none };
 
 /// The number of vertices at which a refinement is stopped because it takes far more than its sizes ask for.
 class VertexBudget {
@@ -17,12 +18,16 @@ class VertexBudget {
   /// Keeps a reference to the options.
   explicit VertexBudget(const PipelineOptions& given) : given_(given) {}
 
-  /// Bounds the number of vertices of further refinements, less tightly if there is no other way to make a
-  /// mesh. The bound is computed when it is needed. Undoes `tighten`.
+  /// Bounds the number of vertices of further refinements, less tightly if there are fewer other ways to make
+  /// a mesh. The bound is computed when it is needed. Undoes `tighten` and `compare_with`.
   void bound(Ways ways);
 
   /// Lowers the bound for further refinements while there are other ways, because one has exploded.
   void tighten();
+
+  /// Bounds further refinements to many times the vertices of a mesh that was made from constrained
+  /// tetrahedra (0: there is none). To coarsen a finer mesh would take long and leave poor tets.
+  void compare_with(std::size_t constrained_vertices);
 
   /// Computes the number for a complex with these options, unless it is known.
   void find(const Plc& plc, const PipelineOptions& options);
@@ -38,9 +43,9 @@ class VertexBudget {
 
  private:
   const PipelineOptions& given_;
-  Ways ways_ = Ways::none;  // whether there are other ways
+  Ways ways_ = Ways::none;
   bool is_known_ = false, is_tight_ = false;
-  std::size_t most_ = 0;
+  std::size_t most_ = 0, compared_with_ = 0;
 };
 
 }  // namespace collarmesh::pipeline

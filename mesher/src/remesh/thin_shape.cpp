@@ -12,6 +12,14 @@ constexpr double radians = std::numbers::pi / 180;
 // A little below the value of the certificate, because normals turn when vertices move.
 constexpr double least_cosine = ForcedEdges::least_cosine_of_sides - 0.02;
 
+/// Returns the narrowness up to which the angle that forced edges permit, times `share`, may have a sine
+/// below `least`.
+double narrowness_of_sine(double least, double share) {
+  constexpr double margin = 1e-6;
+  const double angle = 2 * std::asin(least) / share;
+  return angle < 0.5 * std::numbers::pi ? std::tan(angle) * (1 + margin) : INFINITY;
+}
+
 double sine_above(double degrees) { return std::sin((degrees + 2 * ThinShape::rounding) * radians); }
 
 // Returns true for most tets within the bound, much faster than `measure`. The squared radius has a relative
@@ -42,6 +50,7 @@ ThinShape::ThinShape(const Plc& plc, const TetMesh& mesh, double smallest_angle,
       sine_of_largest_(sine(cosine_)),
       inverse_squared_sine_of_largest_(1 / squared_sine(cosine_)),
       share_((1 + reserve) / tets_across),
+      deep_narrowness_(narrowness_of_sine(deep, share_)),
       forced_(std::move(forced)) {
   if (empty()) return;
   std::vector<double> of_vertex(plc.vertices.size(), smallest_), of_curve(plc.curves.size(), smallest_);
@@ -69,6 +78,14 @@ double ThinShape::forced_sine(const Corners& p, const std::array<Index, 4>& corn
   if (!forced_) return 1;
   const double narrowness = forced_->narrowness(p, corners);
   return narrowness < 1 ? sine_above(share_ * ForcedEdges::smallest_angle(narrowness)) : 1;
+}
+
+double ThinShape::deep_forced_sine(const Corners& p, const std::array<Index, 4>& corners) const {
+  if (!forced_) return 1;
+  const double narrowness = forced_->narrowness(p, corners);
+  if (narrowness >= std::min(1.0, deep_narrowness_)) return 1;
+  const double sine = sine_above(share_ * ForcedEdges::smallest_angle(narrowness));
+  return sine < deep ? sine : 1;
 }
 
 void mark_thin_tets(TetMesh& mesh, double radius_edge) {

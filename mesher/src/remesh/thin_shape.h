@@ -176,7 +176,7 @@ class ThinShape {
                  largest = cosines.largest_angle < 0 ? squared_sine(cosines.largest_angle) : 1;
     double margin = smallest / (least * least);
     if (forced_ && margin < good_enough)
-      if (const double forced = forced_sine(p, corners); forced < deep)
+      if (const double forced = deep_forced_sine(p, corners); forced < deep)
         margin = std::max(margin, std::min(good_enough, smallest / (forced * forced)));
     return {margin, largest * inverse_squared_sine_of_largest_};
   }
@@ -184,7 +184,7 @@ class ThinShape {
   /// At forced edges, small angles count relative to what the edges permit, so that large angles decide.
   double shape_quality_where_forced(const Corners& p, const std::array<Index, 4>& corners,
                                     double sine) const {
-    const double forced = sine < largest_forced_sine ? forced_sine(p, corners) : 1;
+    const double forced = sine < largest_forced_sine ? deep_forced_sine(p, corners) : 1;
     if (forced >= deep) return sine;
     const ExtremeCosines cosines = extreme_cosines(p);
     const double smallest = remeshing::sine(cosines.smallest_angle) * sine_ / forced;
@@ -194,7 +194,7 @@ class ThinShape {
   }
   /// Returns whether a tet of positive volume is about as good as its forced edges permit.
   bool is_as_forced(const Corners& p, const std::array<Index, 4>& corners) const {
-    if (empty() || !forced_ || forced_sine(p, corners) >= deep) return false;
+    if (empty() || deep_forced_sine(p, corners) >= deep) return false;
     const SquaredMargins margins = squared_margins(extreme_cosines(p), p, corners);
     return std::min(margins.of_smallest, margins.of_largest) >= good_enough;
   }
@@ -234,10 +234,13 @@ class ThinShape {
     return least;
   }
   double forced_sine(const Corners& p, const std::array<Index, 4>& corners) const;
+  // Returns the same if it is below `deep`, else 1, at less cost.
+  double deep_forced_sine(const Corners& p, const std::array<Index, 4>& corners) const;
 
   double smallest_, sine_, cosine_, sine_of_largest_, inverse_squared_sine_of_largest_;
   double share_;  // tets must keep this share of the angle that creases or forced edges permit; includes the
                   // reserve
+  double deep_narrowness_;              // narrower tets may have forced sines below `deep`
   std::vector<double> sine_at_vertex_;  // empty if no crease is sharp enough to lower the bound
   std::shared_ptr<const ForcedEdges> forced_;
 };
