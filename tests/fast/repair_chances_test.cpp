@@ -43,8 +43,15 @@ TEST(RepairChances, AreHalvedByFailuresInARowAndDoubledBySuccesses) {
 TEST(RepairChances, AlwaysLeaveSomeVerticesOfEachNeighbourhood) {
   RepairChances chances;
   fail(chances, 100 * RepairChances::many);
-  for (const std::size_t step : {1, 2, 64, 100, 256})
-    EXPECT_NEAR(share_due(chances, step), 1. / RepairChances::most, 0.01) << step;
+  constexpr std::size_t longest_gap = 1500;  // 64 ln(65,536) is 710
+  for (const std::size_t step : {1, 2, 64, 100, 113, 226, 244, 250, 256}) {
+    EXPECT_NEAR(share_due(chances, step), 1. / RepairChances::most, 0.005) << step;
+    std::size_t gap = 0;
+    for (std::size_t i = 0; i < 1 << 16; ++i) {
+      gap = chances.is_due(i * step) ? 0 : gap + 1;
+      ASSERT_LT(gap, longest_gap) << step;
+    }
+  }
 }
 
 }  // namespace

@@ -7,14 +7,18 @@
 namespace collarmesh::remeshing::coarsening {
 
 /// A choice of the vertices whose collapses are tried with repairs. Nearly all trials are in vain at thin
-/// walls that are meshed as coarsely as they can be, and each is dear. So after each `many` failures in a row
-/// only half as many vertices are chosen; after each success, twice as many again.
+/// walls that are meshed as coarsely as they can be, and each is costly. So after each `many` failures in a
+/// row only half as many vertices are chosen; after each success, twice as many again.
 class RepairChances {
  public:
   static constexpr std::size_t many = 100, most = 64;
 
   /// Returns whether the vertex at this place in the order of trials is chosen now.
-  bool is_due(std::size_t place) const { return (place * spread >> 40) % every_ == 0; }
+  bool is_due(std::size_t place) const {
+    std::uint64_t mixed = place * spread;
+    mixed = (mixed ^ mixed >> 32) * spread;
+    return (mixed >> 32) % every_ == 0;
+  }
 
   void note_failure() {
     if (++failures_ < many) return;
@@ -27,8 +31,8 @@ class RepairChances {
   }
 
  private:
-  // An odd factor: neighbours in memory are at regular distances in the order of trials, so a choice of every
-  // n-th place would leave out whole neighbourhoods.
+  // A factor that mixes bits: neighbours in memory are at regular distances in the order of trials, so a
+  // choice of every n-th place would leave out whole neighbourhoods.
   static constexpr std::uint64_t spread = 0x9E3779B97F4A7C15;
 
   std::size_t every_ = 1;     // about one in this many vertices is chosen

@@ -20,8 +20,14 @@ bool misses_volumes_only(const CheckReport& check) {
   });
 }
 
-double findings_per_tet(const PipelineResult& made) {
-  return static_cast<double>(made.check.findings_total) / static_cast<double>(made.result.mesh.tets.size());
+bool misses_far_less(const PipelineResult& constrained, const PipelineResult& refined) {
+  constexpr std::size_t few = 20;
+  constexpr double share = 0.1;
+  const auto findings_per_tet = [](const PipelineResult& made) {
+    return static_cast<double>(made.check.findings_total) / static_cast<double>(made.result.mesh.tets.size());
+  };
+  return refined.check.findings_total > few && !misses_volumes_only(refined.check) &&
+         findings_per_tet(constrained) < share * findings_per_tet(refined);
 }
 
 std::size_t count_misshapen(const MeshJob& job, const TetMesh& mesh) {

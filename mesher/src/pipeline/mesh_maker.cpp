@@ -240,29 +240,30 @@ bool MeshMaker::replace_refined() {
 }
 
 void MeshMaker::make_anyhow(const Plc& plc, const std::string& why, std::size_t tried) {
-  constexpr std::size_t few = 20;  // further seeds may mend this many findings
   if (take_constrained(plc, why)) return;
   const std::optional<SurfaceTolerance> nearer = nearer_;
-  std::optional<PipelineResult> constrained;
-  if (has_few_triangles(plc)) constrained = from_constrained(plc, why, Hope::any);
+  std::optional<PipelineResult> constrained = take_nearly_good();
+  const bool comes_first = has_few_triangles(plc),
+             may_follow = !comes_first && may_start_constrained(job_.given);
+  if (!constrained && comes_first) constrained = from_constrained(plc, why, Hope::any);
   std::optional<SurfaceTolerance> nearer_of_constrained = std::exchange(nearer_, nearer);
   const auto use = [&] {
     nearer_ = nearer_of_constrained;
     use_constrained(std::move(*constrained));
   };
   if (constrained && constrained->guarantees_hold()) return use();
-  if (may_start_constrained(job_.given)) job_.budget.bound(Ways::constrained);
-  job_.budget.compare_with(constrained_vertices_);
-  const bool is_refined = refines_within_budgets(plc, tried, constrained.has_value());
+  if (constrained || may_follow) job_.budget.bound(Ways::constrained);
+  if (constrained) job_.budget.compare_with(constrained_vertices_);
+  bool is_refined = refines_within_budgets(plc, tried, constrained.has_value());
   job_.budget.bound(Ways::none);
-  if (!is_refined && !constrained) {
+  if (!is_refined && may_follow) {
     constrained = from_constrained(plc, why, Hope::any);
-    if (!constrained) throw Ended();
-    nearer_of_constrained = nearer_;
+    nearer_of_constrained = std::exchange(nearer_, nearer);
+    is_refined = !constrained && refines_within_budgets(plc, tried, false);
   }
-  if (!is_refined || (constrained && job_.made.check.findings_total > few &&
-                      findings_per_tet(*constrained) < findings_per_tet(job_.made)))
-    use();
+  job_.budget.find(plc, job_.options);
+  if (!is_refined && !constrained) throw Ended();
+  if (constrained && (!is_refined || misses_far_less(*constrained, job_.made))) use();
 }
 
 void MeshMaker::use_constrained(PipelineResult constrained) {
@@ -273,30 +274,33 @@ void MeshMaker::use_constrained(PipelineResult constrained) {
   constrained_.reset();
 }
 
-/// Refines a complex if more vertices are allowed than `tried`. Returns whether there is a mesh. If there is
+/// Refines a complex if more vertices are allowed than `tried`. Returns whether this made a mesh. If there is
 /// another mesh, takes at most half of the remaining time.
 bool MeshMaker::refines_within_budgets(const Plc& plc, std::size_t tried, bool has_mesh) {
   constexpr double share_of_time = 0.5;
-  set_up(plc, job_.given.mesh.seed);
-  if (const std::size_t most = job_.budget.most(); most > 0 && most <= tried) return false;
-  const auto refine_and_reshape = [&] { make(plc, job_.given.mesh.seed); };
-  const auto fails = [&] {
+  bool is_refined = false;
+  const auto refine_and_reshape = [&] {
+    set_up(plc, job_.given.mesh.seed);
+    if (const std::size_t most = job_.budget.most(); most > 0 && most <= tried) return;
+    make(plc, job_.given.mesh.seed);
+    is_refined = true;
+  };
+  const auto require_another_way = [&] {
     if (job_.made.result.status == MeshStatus::cancelled || !(has_mesh || job_.hit_bound())) throw;
-    return false;
   };
   try {
     if (has_mesh)
       job_.control.attempt(share_of_time, refine_and_reshape);
     else
       refine_and_reshape();
-    return true;
   } catch (const Ended&) {
-    return fails();
+    require_another_way();
   } catch (const PlcError&) {
-    return fails();
+    require_another_way();
   } catch (const std::bad_alloc&) {
-    return fails();
+    require_another_way();
   }
+  return is_refined;
 }
 
 bool MeshMaker::has_few_triangles(const Plc& plc) {

@@ -36,9 +36,9 @@ class MeshMaker {
 
   /// Meshes a complex when other ways have failed: from its constrained tetrahedra if that keeps every
   /// guarantee; else by refinement, if more vertices are allowed than `tried`, at which a refinement of this
-  /// complex has ended; else, or if the refined mesh misses guarantees at more of its tets, from constrained
-  /// tetrahedra that need only keep the guarantees that do not concern shapes. `why` is the reason that a
-  /// note gives for constrained tetrahedra.
+  /// complex has ended; else, or if the refined mesh misses guarantees at a far larger share of its tets,
+  /// from constrained tetrahedra that need only keep the guarantees that do not concern shapes. `why` is the
+  /// reason that a note gives for constrained tetrahedra.
   void make_anyhow(const Plc& plc, const std::string& why, std::size_t tried);
 
   /// Meshes a complex from its constrained tetrahedra. Returns nothing if there are none, if the options ask
@@ -54,13 +54,13 @@ class MeshMaker {
   /// it, the target lengths. Returns whether it is used. Tries each complex only once.
   bool take_constrained(const Plc& plc, const std::string& why, Lengths lengths = Lengths::any);
 
-  /// Returns the last mesh that `take_constrained` did not use although it misses only few bounds on shapes,
-  /// if there was one since the last call.
-  std::optional<PipelineResult> nearly_good() { return std::exchange(nearly_good_, std::nullopt); }
+  /// Removes and returns the last mesh of this complex that `take_constrained` did not use although it misses
+  /// only few bounds on shapes, if there is one.
+  std::optional<PipelineResult> take_nearly_good() { return std::exchange(nearly_good_, std::nullopt); }
   /// Returns the number of vertices of the last mesh made from constrained tetrahedra of this complex, also
   /// of one that was given up; 0: there is none.
   std::size_t constrained_vertices() const { return constrained_vertices_; }
-  /// Uses a mesh made from constrained tetrahedra.
+  /// Uses a mesh made from constrained tetrahedra of the job's current complex.
   void use_constrained(PipelineResult constrained);
 
   /// Makes sure that the constrained tetrahedra of this complex are not tried unless all else fails.
@@ -69,6 +69,11 @@ class MeshMaker {
 
   /// Returns whether the last mesh was refined to many times the predicted number of tets, and coarsened.
   bool was_far_too_fine() const { return was_far_too_fine_; }
+
+  /// Whether the kept mesh started from constrained tetrahedra. Set it when an earlier mesh is kept after
+  /// all.
+  bool is_constrained() const { return is_constrained_; }
+  void set_constrained(bool constrained) { is_constrained_ = constrained; }
 
   /// Returns whether the kept mesh was refined, so that another seed changes it. Further seeds of constrained
   /// tetrahedra have been tried already.

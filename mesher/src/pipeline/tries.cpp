@@ -227,7 +227,7 @@ std::pair<Tries::End, std::string> Tries::attempt_simplest(RepairOptions& repair
     better = maker_.take_constrained(all.plc, "thin features take far more vertices than the sizes ask for",
                                      MeshMaker::Lengths::kept);
     gave_up = maker_.has_given_up_constrained(all.plc);
-    nearly_good = maker_.nearly_good();
+    nearly_good = maker_.take_nearly_good();
     constrained_vertices = maker_.constrained_vertices();
     if (!better) better = overlay_thin_features(repair, all, most_asked_for_);
   }
@@ -238,21 +238,11 @@ std::pair<Tries::End, std::string> Tries::attempt_simplest(RepairOptions& repair
   if (gave_up) maker_.give_up_constrained(all.plc);
   job_.budget.compare_with(constrained_vertices);
   tried = attempt(all.plc, error);
-  if (tried.first == End::missed && uses_if_better(std::move(nearly_good))) tried.second = job_.made.missed();
+  if (tried.first == End::missed && nearly_good && misses_far_less(*nearly_good, job_.made)) {
+    maker_.use_constrained(std::move(*nearly_good));
+    tried.second = job_.made.missed();
+  }
   return tried;
-}
-
-/// Uses a mesh made from constrained tetrahedra if it misses guarantees at far fewer of its tets than the
-/// mesh at hand, which further seeds or smaller tolerances would hardly mend. Returns whether it does.
-bool Tries::uses_if_better(std::optional<PipelineResult> constrained) {
-  constexpr double far_fewer = 0.1;
-  constexpr std::size_t few = 20;
-  const CheckReport& check = job_.made.check;
-  if (!constrained || check.findings_total <= few || misses_volumes_only(check) ||
-      findings_per_tet(*constrained) >= far_fewer * findings_per_tet(job_.made))
-    return false;
-  maker_.use_constrained(std::move(*constrained));
-  return true;
 }
 
 bool Tries::may_overlay() const {
@@ -551,6 +541,7 @@ template <class Way>
 bool Tries::find_better(bool has_mesh, const Way& way) {
   PipelineResult& made = job_.made;
   PipelineResult kept = std::exchange(made, {});
+  const bool kept_is_constrained = maker_.is_constrained();
   bool better = false;
   const auto fails = [&] {
     if ((!has_mesh && !job_.hit_bound()) || made.result.status == MeshStatus::cancelled) throw;
@@ -571,7 +562,10 @@ bool Tries::find_better(bool has_mesh, const Way& way) {
   } catch (const std::bad_alloc&) {
     fails();
   }
-  if (!better) made = std::move(kept);
+  if (!better) {
+    made = std::move(kept);
+    maker_.set_constrained(kept_is_constrained);
+  }
   return better;
 }
 

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <exception>
 #include <functional>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -41,7 +40,6 @@ class Tries {
     refused    ///< no collar fits between features
   };
 
-  bool uses_if_better(std::optional<PipelineResult> constrained);
   std::string repair_sharp_creases(RepairOptions& repair, SoupPipelineResult& all);
   std::pair<End, std::string> attempt_simplest(RepairOptions& repair, SoupPipelineResult& all,
                                                std::exception_ptr& error);
