@@ -24,7 +24,7 @@ using pipeline::MeshMaker;
 struct LastWay {
   LastWay(double gap, std::size_t tried)
       : plc(build_plc(std::vector{testing::box(), testing::box({0, 0, 1 + gap}, {1, 1, 2})})),
-        job(with_size(), {}),
+        job(with_size(), execution),
         maker(job, nullptr) {
     job.budget.bound(pipeline::Ways::none);
     maker.make_anyhow(plc, "the refinement exploded", tried);
@@ -37,6 +37,7 @@ struct LastWay {
   }
 
   Plc plc;
+  Execution execution;
   MeshJob job;
   MeshMaker maker;
 };

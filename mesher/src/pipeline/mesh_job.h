@@ -12,8 +12,10 @@ namespace collarmesh::pipeline {
 /// The data of the mesh that is being made. Each stage reads what earlier stages left here, and writes
 /// `made`.
 struct MeshJob {
+  /// Keeps a reference to `execution`.
   MeshJob(const PipelineOptions& asked_for, const Execution& execution)
       : given(with_profile(asked_for)), start(given.start), control(given, execution, made), budget(given) {}
+  MeshJob(const PipelineOptions&, Execution&&) = delete;
 
   bool exact() const { return static_cast<bool>(options.exact); }
   const Execution& execution() const { return control.execution(); }
