@@ -18,8 +18,7 @@ constexpr double flat_volume = 1e-13;
 double Operations::new_quality(const std::array<Index, 4>& v, double above) const {
   const auto& points = mesh_.points;
   const Corners p{points[v[0]], points[v[1]], points[v[2]], points[v[3]]};
-  const double quality = rule_.quality(p, v);
-  return quality > above && rule_.allows(p, v, quality) ? quality : -1;
+  return rule_.quality_if_allowed(p, v, above);
 }
 
 // Triangulates the polygon around the edge ab. Each triangle makes two tets, with a and with b; the worst of

@@ -28,6 +28,12 @@ class ShapeRule {
   /// Returns whether an operation may make this tet, whose quality is given. A flat or an inverted tet comes
   /// here if it replaces a worse one.
   virtual bool allows(const Corners& p, const std::array<Index, 4>& corners, double quality) const = 0;
+  /// Returns the quality if it is above `above` and an operation may make the tet, else -1.
+  virtual double quality_if_allowed(const Corners& p, const std::array<Index, 4>& corners,
+                                    double above) const {
+    const double quality = this->quality(p, corners);
+    return quality > above && allows(p, corners, quality) ? quality : -1;
+  }
   /// Returns whether an operation may make an edge between these vertices in place of another edge there.
   virtual bool allows_edge(Index, Index, const Vector& /*edge*/, const Vector& /*before*/) const {
     return true;
@@ -95,15 +101,18 @@ class SliverRule final : public ShapeRule {
       : bound_(radius_edge), thin_(thin), cells_(cells) {}
 
   double quality(const Corners& p, const std::array<Index, 4>& corners) const override {
-    const double sine = shape_quality(p);
-    if (thin_ == nullptr || !(sine > 0)) return sine;
-    if (forbids_thin_tets() && !cells_->allow(p, corners)) return CellBounds::forbidden * sine;
-    return thin_->is_too_obtuse(p, sine) ? beyond * sine
-                                         : thin_->shape_quality_where_forced(p, corners, sine);
+    MeasuredTet tet(p, corners);
+    return quality(tet);
   }
   bool allows(const Corners& p, const std::array<Index, 4>& corners, double /*quality*/) const override {
-    return (bound_.holds(p) || (thin_ != nullptr && thin_->contains(p, corners))) &&
-           (cells_ == nullptr || cells_->allow(p, corners));
+    MeasuredTet tet(p, corners);
+    return allows(tet);
+  }
+  double quality_if_allowed(const Corners& p, const std::array<Index, 4>& corners,
+                            double above) const override {
+    MeasuredTet tet(p, corners);
+    const double quality = this->quality(tet);
+    return quality > above && allows(tet) ? quality : -1;
   }
 
   /// Returns true only if the quality is above this value, which is positive. Much cheaper than the quality;
@@ -130,6 +139,17 @@ class SliverRule final : public ShapeRule {
  private:
   static constexpr double beyond = 1e-3;
 
+  double quality(MeasuredTet& tet) const {
+    const double sine = shape_quality(tet.places());
+    if (thin_ == nullptr || !(sine > 0)) return sine;
+    if (forbids_thin_tets() && !cells_->allow(tet.places(), tet.vertices()))
+      return CellBounds::forbidden * sine;
+    return thin_->is_too_obtuse(tet, sine) ? beyond * sine : thin_->shape_quality_where_forced(tet, sine);
+  }
+  bool allows(MeasuredTet& tet) const {
+    return (bound_.holds(tet.places()) || (thin_ != nullptr && thin_->contains(tet))) &&
+           (cells_ == nullptr || cells_->allow(tet.places(), tet.vertices()));
+  }
   bool forbids_thin_tets() const { return cells_ != nullptr && cells_->forbid_thin_tets(); }
 
   RadiusEdgeBound bound_;

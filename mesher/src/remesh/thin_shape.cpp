@@ -74,15 +74,15 @@ ThinShape::ThinShape(const Plc& plc, const TetMesh& mesh, double smallest_angle,
   }
 }
 
-double ThinShape::forced_sine(const Corners& p, const std::array<Index, 4>& corners) const {
+double ThinShape::forced_sine(MeasuredTet& tet) const {
   if (!forced_) return 1;
-  const double narrowness = forced_->narrowness(p, corners);
+  const double narrowness = tet.narrowness(*forced_);
   return narrowness < 1 ? sine_above(share_ * ForcedEdges::smallest_angle(narrowness)) : 1;
 }
 
-double ThinShape::deep_forced_sine(const Corners& p, const std::array<Index, 4>& corners) const {
+double ThinShape::deep_forced_sine(MeasuredTet& tet) const {
   if (!forced_) return 1;
-  const double narrowness = forced_->narrowness(p, corners);
+  const double narrowness = tet.narrowness(*forced_);
   if (narrowness >= std::min(1.0, deep_narrowness_)) return 1;
   const double sine = sine_above(share_ * ForcedEdges::smallest_angle(narrowness));
   return sine < deep ? sine : 1;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "collarmesh/plc.h"
@@ -136,6 +137,32 @@ inline ExtremeAngles extreme_angles(const Corners& p) {
   return {angle(cosines.smallest_angle), angle(cosines.largest_angle)};
 }
 
+/// A tet whose angles and forced edges are looked at once, when they are first asked for.
+class MeasuredTet {
+ public:
+  /// Keeps references.
+  MeasuredTet(const Corners& places, const std::array<Index, 4>& vertices)
+      : places_(places), vertices_(vertices) {}
+
+  const Corners& places() const { return places_; }
+  const std::array<Index, 4>& vertices() const { return vertices_; }
+  const ExtremeCosines& cosines() {
+    if (!cosines_) cosines_ = extreme_cosines(places_);
+    return *cosines_;
+  }
+  /// Returns the width that forced edges leave (ForcedEdges::narrowness). Each call must get the same edges.
+  double narrowness(const ForcedEdges& forced) {
+    if (!narrowness_) narrowness_ = forced.narrowness(places_, vertices_);
+    return *narrowness_;
+  }
+
+ private:
+  const Corners& places_;
+  const std::array<Index, 4>& vertices_;
+  std::optional<ExtremeCosines> cosines_;
+  std::optional<double> narrowness_;
+};
+
 /// The bounds on the shape of thin tets: on dihedral angles from below and above, and on face angles from
 /// above, as tight as thin places permit. If features meet at less than twice the smallest angle, the lower
 /// bound is half the angle between them. If the input forces an edge of the tet to be short, the lower bound
@@ -155,13 +182,14 @@ class ThinShape {
   double squared_cosine_of_largest() const { return -cosine_; }
   /// Returns the sine of the lower bound on a tet's dihedral angles, with a margin for rounding.
   double smallest_sine(const Corners& p, const std::array<Index, 4>& corners) const {
-    return std::min(smallest_sine_at(corners), forced_sine(p, corners));
+    MeasuredTet tet(p, corners);
+    return std::min(smallest_sine_at(corners), forced_sine(tet));
   }
   /// Returns whether a tet of positive volume has an angle above the largest one of thin tets. `shape` is its
   /// shape_quality, which rules out such dihedral angles for most tets.
-  bool is_too_obtuse(const Corners& p, double shape) const {
-    return shape > obtuse_weight * sine_of_largest_ + rounding ? least_cosine_of_faces(p) < cosine_
-                                                               : extreme_cosines(p).largest_angle < cosine_;
+  bool is_too_obtuse(MeasuredTet& tet, double shape) const {
+    return shape > obtuse_weight * sine_of_largest_ + rounding ? least_cosine_of_faces(tet.places()) < cosine_
+                                                               : tet.cosines().largest_angle < cosine_;
   }
   /// The squared sines of the smallest angle and of 180 degrees minus the largest angle, each divided by the
   /// squared sine of its bound: both are at least 1 if the tet keeps the bounds. Negative for a flat or an
@@ -175,18 +203,19 @@ class ThinShape {
     const double least = smallest_sine_at(corners), smallest = squared_sine(cosines.smallest_angle),
                  largest = cosines.largest_angle < 0 ? squared_sine(cosines.largest_angle) : 1;
     double margin = smallest / (least * least);
-    if (forced_ && margin < good_enough)
-      if (const double forced = deep_forced_sine(p, corners); forced < deep)
+    if (forced_ && margin < good_enough) {
+      MeasuredTet tet(p, corners);
+      if (const double forced = deep_forced_sine(tet); forced < deep)
         margin = std::max(margin, std::min(good_enough, smallest / (forced * forced)));
+    }
     return {margin, largest * inverse_squared_sine_of_largest_};
   }
   /// Returns the quality of a tet of positive volume; `sine` is its quality by angles alone (shape_quality).
   /// At forced edges, small angles count relative to what the edges permit, so that large angles decide.
-  double shape_quality_where_forced(const Corners& p, const std::array<Index, 4>& corners,
-                                    double sine) const {
-    const double forced = sine < largest_forced_sine ? deep_forced_sine(p, corners) : 1;
+  double shape_quality_where_forced(MeasuredTet& tet, double sine) const {
+    const double forced = sine < largest_forced_sine ? deep_forced_sine(tet) : 1;
     if (forced >= deep) return sine;
-    const ExtremeCosines cosines = extreme_cosines(p);
+    const ExtremeCosines& cosines = tet.cosines();
     const double smallest = remeshing::sine(cosines.smallest_angle) * sine_ / forced;
     return cosines.largest_angle < 0
                ? std::min(smallest, obtuse_weight * remeshing::sine(cosines.largest_angle))
@@ -194,7 +223,8 @@ class ThinShape {
   }
   /// Returns whether a tet of positive volume is about as good as its forced edges permit.
   bool is_as_forced(const Corners& p, const std::array<Index, 4>& corners) const {
-    if (empty() || deep_forced_sine(p, corners) >= deep) return false;
+    if (empty()) return false;
+    if (MeasuredTet tet(p, corners); deep_forced_sine(tet) >= deep) return false;
     const SquaredMargins margins = squared_margins(extreme_cosines(p), p, corners);
     return std::min(margins.of_smallest, margins.of_largest) >= good_enough;
   }
@@ -206,14 +236,19 @@ class ThinShape {
   }
   /// Returns whether the tet keeps the bounds of thin tets, and a short forced edge lowers these bounds.
   bool is_thin_by_force(const Corners& p, const std::array<Index, 4>& corners) const {
-    return !empty() && forced_ && forced_sine(p, corners) < sine_ && contains(p, corners);
+    MeasuredTet tet(p, corners);
+    return !empty() && forced_ && forced_sine(tet) < sine_ && contains(tet);
   }
   bool contains(const Corners& p, const std::array<Index, 4>& corners) const {
+    MeasuredTet tet(p, corners);
+    return contains(tet);
+  }
+  bool contains(MeasuredTet& tet) const {
     if (empty()) return false;
-    const ExtremeCosines cosines = extreme_cosines(p);
+    const ExtremeCosines& cosines = tet.cosines();
     if (!cosines.positive || cosines.largest_angle < cosine_) return false;
     const double smallest = sine(cosines.smallest_angle);
-    return smallest >= smallest_sine_at(corners) || smallest >= forced_sine(p, corners);
+    return smallest >= smallest_sine_at(tet.vertices()) || smallest >= forced_sine(tet);
   }
 
  private:
@@ -233,9 +268,9 @@ class ThinShape {
       if (v < sine_at_vertex_.size()) least = std::min(least, sine_at_vertex_[v]);
     return least;
   }
-  double forced_sine(const Corners& p, const std::array<Index, 4>& corners) const;
+  double forced_sine(MeasuredTet& tet) const;
   // Returns the same if it is below `deep`, else 1, at less cost.
-  double deep_forced_sine(const Corners& p, const std::array<Index, 4>& corners) const;
+  double deep_forced_sine(MeasuredTet& tet) const;
 
   double smallest_, sine_, cosine_, sine_of_largest_, inverse_squared_sine_of_largest_;
   double share_;  // tets must keep this share of the angle that creases or forced edges permit; includes the

@@ -164,9 +164,8 @@ double Operations::quality_by_tets(const Point& apex, Index id, double above) {
     const auto& face = cone_.hull[i];
     if (contains(face, id)) continue;
     const std::array<Index, 4> corners{id, face[0], face[1], face[2]};
-    const double quality = rule_.quality(with_apex(apex, corners), corners);
-    worst = std::min(worst, quality);
-    if (worst > above && may_be_made(apex, corners, quality)) continue;
+    worst = std::min(worst, rule_.quality_if_allowed(with_apex(apex, corners), corners, above));
+    if (worst > above) continue;
     std::swap(cone_.hull[0], cone_.hull[i]);  // this face is likely to decide for the next place, too
     std::swap(cone_.hull_tet[0], cone_.hull_tet[i]);
     return -1;

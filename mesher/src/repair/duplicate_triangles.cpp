@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <tuple>
 
 #include "common/disjoint_sets.h"
@@ -14,50 +15,48 @@ namespace collarmesh::repairing {
 
 using namespace facets;
 
-bool is_odd(const Corners& c) { return (c[0] > c[1]) != ((c[1] > c[2]) != (c[0] > c[2])); }
-
-std::vector<Index> cancelled_among(std::vector<DuplicateTriangle> duplicates, bool in_complex) {
-  std::vector<Index> cancelled;
-  if (duplicates.size() < 2) return cancelled;
-  std::sort(duplicates.begin(), duplicates.end());
-  if (in_complex) {
-    for (auto duplicate = duplicates.begin() + 1; duplicate != duplicates.end(); ++duplicate)
-      cancelled.push_back(duplicate->triangle);
-    return cancelled;
-  }
-  const auto middle = std::find_if(duplicates.begin(), duplicates.end(),
-                                   [](const DuplicateTriangle& duplicate) { return duplicate.odd; });
-  for (auto even = duplicates.begin(), odd = middle; even != middle && odd != duplicates.end();
-       ++even, ++odd) {
-    cancelled.push_back(even->triangle);
-    cancelled.push_back(odd->triangle);
-  }
-  return cancelled;
-}
-
 namespace {
 
-// Visits each group of two or more triangles of one soup that have the same corners.
+// One of several triangles of a soup with the same corners.
+struct Duplicate {
+  bool odd;  // whether its corners are an odd permutation of the sorted ones; odd and even duplicates have
+             // opposite orientations
+  Index triangle;
+};
+
+bool is_odd(const Corners& c) { return (c[0] > c[1]) != ((c[1] > c[2]) != (c[0] > c[2])); }
+
+std::vector<Index> all_triangles(const ComplexDraft& draft) {
+  std::vector<Index> all(draft.triangles.size());
+  std::iota(all.begin(), all.end(), Index{0});
+  return all;
+}
+
+// Visits each group of two or more of these triangles that have the same corners and are of one soup. Even
+// duplicates come first, then by number.
 template <class Visit>
-void for_each_group(const ComplexDraft& draft, const Visit& visit) {
+void for_each_group(const ComplexDraft& draft, const std::vector<Index>& triangles, const Visit& visit) {
   struct Key {
     Corners corners;
-    Index soup, triangle;
+    Index soup;
+    Duplicate duplicate;
   };
-  std::vector<Key> keys(draft.triangles.size());
-  for (Index t = 0; t < keys.size(); ++t) {
-    keys[t] = {draft.triangles[t], draft.origins[t].soup, t};
-    std::sort(keys[t].corners.begin(), keys[t].corners.end());
+  std::vector<Key> keys;
+  keys.reserve(triangles.size());
+  for (const Index t : triangles) {
+    keys.push_back({draft.triangles[t], draft.origins[t].soup, {is_odd(draft.triangles[t]), t}});
+    std::sort(keys.back().corners.begin(), keys.back().corners.end());
   }
   std::sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) {
-    return std::tie(a.corners, a.soup, a.triangle) < std::tie(b.corners, b.soup, b.triangle);
+    return std::tie(a.corners, a.soup, a.duplicate.odd, a.duplicate.triangle) <
+           std::tie(b.corners, b.soup, b.duplicate.odd, b.duplicate.triangle);
   });
-  std::vector<DuplicateTriangle> duplicates;
+  std::vector<Duplicate> duplicates;
   for (auto first = keys.begin(); first != keys.end();) {
     duplicates.clear();
     auto last = first;
     for (; last != keys.end() && last->corners == first->corners && last->soup == first->soup; ++last)
-      duplicates.push_back({is_odd(draft.triangles[last->triangle]), last->triangle});
+      duplicates.push_back(last->duplicate);
     if (duplicates.size() > 1) visit(duplicates);
     first = last;
   }
@@ -89,13 +88,27 @@ DisjointSets components_of(const ComplexDraft& draft) {
 
 }  // namespace
 
+std::vector<Index> cancelled_among(const ComplexDraft& draft, const std::vector<Index>& triangles) {
+  std::vector<Index> cancelled;
+  for_each_group(draft, triangles, [&](const std::vector<Duplicate>& duplicates) {
+    if (draft.soup_is_complex[draft.origins[duplicates[0].triangle].soup]) {
+      for (auto duplicate = duplicates.begin() + 1; duplicate != duplicates.end(); ++duplicate)
+        cancelled.push_back(duplicate->triangle);
+      return;
+    }
+    const auto middle = std::ranges::find_if(duplicates, &Duplicate::odd);
+    for (auto even = duplicates.begin(), odd = middle; even != middle && odd != duplicates.end();
+         ++even, ++odd) {
+      cancelled.push_back(even->triangle);
+      cancelled.push_back(odd->triangle);
+    }
+  });
+  return cancelled;
+}
+
 std::size_t cancel_duplicates(ComplexDraft& draft) {
   std::vector<bool> removed(draft.triangles.size(), false);
-  for_each_group(draft, [&](const std::vector<DuplicateTriangle>& duplicates) {
-    for (const Index t :
-         cancelled_among(duplicates, draft.soup_is_complex[draft.origins[duplicates[0].triangle].soup]))
-      removed[t] = true;
-  });
+  for (const Index t : cancelled_among(draft, all_triangles(draft))) removed[t] = true;
   return drop(draft, removed);
 }
 
@@ -112,8 +125,7 @@ bool is_two_sided(const ComplexDraft& draft) {
 
 std::size_t keep_one_side(ComplexDraft& draft) {
   std::vector<bool> second(draft.triangles.size(), false);
-  for_each_group(draft, [&](std::vector<DuplicateTriangle> duplicates) {
-    std::sort(duplicates.begin(), duplicates.end());
+  for_each_group(draft, all_triangles(draft), [&](const std::vector<Duplicate>& duplicates) {
     for (std::size_t i = 1; i < duplicates.size(); ++i) second[duplicates[i].triangle] = true;
   });
   DisjointSets component = components_of(draft);

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -8,24 +7,10 @@
 
 namespace collarmesh::repairing {
 
-/// One of several triangles of a soup with the same corners.
-struct DuplicateTriangle {
-  bool odd;  ///< whether its corners are an odd permutation of the sorted ones; odd and even duplicates have
-             ///< opposite orientations
-  Index triangle;
-
-  friend bool operator==(const DuplicateTriangle& a, const DuplicateTriangle& b) = default;
-  friend bool operator<(const DuplicateTriangle& a, const DuplicateTriangle& b) {
-    return a.odd != b.odd ? b.odd : a.triangle < b.triangle;
-  }
-};
-
-/// Returns whether the corners are an odd permutation of the sorted ones.
-bool is_odd(const facets::Corners& corners);
-
-/// Returns which triangles cancel, given all triangles of one soup with the same corners. Pairs of opposite
-/// orientation cancel; in a complex, where orientation has no meaning, all but one of the triangles cancel.
-std::vector<Index> cancelled_among(std::vector<DuplicateTriangle> duplicates, bool in_complex);
+/// Returns which of these triangles cancel. Of the triangles of one soup with the same corners, pairs of
+/// opposite orientation cancel; in a complex, where orientation has no meaning, all but one cancel. Cost:
+/// O(n log n).
+std::vector<Index> cancelled_among(const facets::ComplexDraft& draft, const std::vector<Index>& triangles);
 
 /// Drops the triangles that cancel (see `cancelled_among`) and returns their number. Cost: O(n log n).
 std::size_t cancel_duplicates(facets::ComplexDraft& draft);

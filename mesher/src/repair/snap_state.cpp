@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/sort_uniquely.h"
 #include "repair/duplicate_triangles.h"
 
 namespace collarmesh::repairing {
@@ -79,26 +80,22 @@ std::vector<bool> SnapState::unseen(By by) const {
 }
 
 std::size_t cancel_new_duplicates(SnapState& state) {
-  std::size_t cancelled = 0;
   const ComplexDraft& draft = state.draft();
-  for (const Index t : state.take_added()) {
-    if (!state.triangles().alive(t)) continue;
-    const Corners& corners = draft.triangles[t];
-    const Index soup = draft.origins[t].soup;
-    std::vector<DuplicateTriangle> duplicates;
-    const auto has = [](const Corners& c, Index p) { return std::find(c.begin(), c.end(), p) != c.end(); };
-    state.triangles().for_each_at(state.triangles().least_busy(corners), [&](Index side) {
-      const Corners& c = draft.triangles[side / 3];
-      if (draft.origins[side / 3].soup == soup &&
-          std::ranges::all_of(corners, [&](Index p) { return has(c, p); }))
-        duplicates.push_back({is_odd(c), side / 3});
-    });
-    for (const Index duplicate : cancelled_among(std::move(duplicates), draft.soup_is_complex[soup])) {
-      state.take(duplicate);
-      ++cancelled;
-    }
+  // Duplicates meet at their corners. A corner with many triangles is searched once for all of them.
+  std::vector<Index> corners;
+  for (const Index t : state.take_added())
+    if (state.triangles().alive(t)) corners.push_back(state.triangles().least_busy(draft.triangles[t]));
+  sort_uniquely(corners);
+  std::size_t count = 0;
+  std::vector<Index> there;
+  for (const Index corner : corners) {
+    there.clear();
+    state.triangles().for_each_at(corner, [&](Index side) { there.push_back(side / 3); });
+    const std::vector<Index> cancelled = cancelled_among(draft, there);
+    for (const Index t : cancelled) state.take(t);
+    count += cancelled.size();
   }
-  return cancelled;
+  return count;
 }
 
 }  // namespace collarmesh::repairing

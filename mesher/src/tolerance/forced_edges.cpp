@@ -29,6 +29,7 @@ double distance_across(const std::array<Point, 4>& p, const std::array<unsigned,
 }  // namespace
 
 double narrowness_of(const std::array<Point, 4>& p, const std::array<unsigned, 4>& across) {
+  if ((across[0] | across[1] | across[2] | across[3]) == 0) return 1;
   double shortest = INFINITY, longest = 0;
   for (unsigned i = 0; i < 4; ++i)
     for (unsigned j = 0; j < i; ++j) {
