@@ -4,13 +4,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <limits>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "collarmesh/plc_builder.h"
 #include "pipeline/certification.h"
+#include "pipeline/constrained_start.h"
 #include "support/shapes.h"
 
 namespace collarmesh::mesh_maker_test {
@@ -59,6 +62,52 @@ TEST(MeshMaker, DoesNotRefineAgainWithTheSameBound) {
   EXPECT_TRUE(std::ranges::any_of(result.check.notes, [](const std::string& note) {
     return note.find("the refinement exploded") != std::string::npos;
   }));
+}
+
+/// Settles the mesh of a box when its time is used up.
+class Settling : public ::testing::Test {
+ protected:
+  Settling() : plc_(build_plc(std::vector{testing::box()})), job_(options(), execution_) {
+    MeshMaker(job_, nullptr).make(plc_, 1);
+  }
+
+  void settle_without_time() {
+    job_.control.attempt(1e-12, [&] {
+      while (!job_.control.execution().cancelled()) std::this_thread::yield();
+      settle(job_, pipeline::Hope::any);
+    });
+    EXPECT_EQ(job_.made.result.status, MeshStatus::complete);
+  }
+
+  static PipelineOptions options() {
+    PipelineOptions options = LastWay::with_size();
+    options.start = Start::constrained;
+    options.mesh.time_limit = 1e6;
+    return options;
+  }
+
+  Plc plc_;
+  Execution execution_;
+  MeshJob job_;
+};
+
+TEST_F(Settling, KeepsAGoodMeshAtATimeLimit) {
+  const TetMesh before = job_.made.result.mesh;
+  ASSERT_EQ(pipeline::count_misshapen(job_, before), 0U);
+  settle_without_time();
+  EXPECT_EQ(job_.made.result.mesh.tets, before.tets);
+}
+
+TEST_F(Settling, KeepsAPoorMeshAtATimeLimit) {
+  TetMesh& mesh = job_.made.result.mesh;
+  const auto& tet = *std::ranges::find_if(
+      mesh.tets, [&](const auto& corners) { return mesh.features[corners[0]].dimension == 3; });
+  Point& p = mesh.points[tet[0]];
+  p = p + 0.999 * (mesh.points[tet[1]] - p);
+  const std::vector<std::array<Index, 4>> before = mesh.tets;
+  ASSERT_GT(pipeline::count_misshapen(job_, mesh), 0U);
+  settle_without_time();
+  EXPECT_EQ(mesh.tets, before);
 }
 
 PipelineResult with_findings(std::size_t tets, std::size_t findings, const char* guarantee = "thin_angles") {

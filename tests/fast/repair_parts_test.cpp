@@ -462,6 +462,21 @@ TEST(Snapping, CancelsDuplicates) {
   EXPECT_EQ(cancel_duplicates(two), 0U);
 }
 
+TEST(Snapping, OppositeDuplicatesCancelInPairs) {
+  PolygonSoup soup;
+  soup.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  using Facet = std::array<Index, 3>;
+  for (const Facet& facet : {Facet{0, 1, 2}, Facet{1, 2, 0}, Facet{2, 1, 0}, Facet{0, 1, 3}, Facet{1, 3, 0},
+                             Facet{1, 2, 3}, Facet{3, 2, 1}})
+    soup.add_facet(facet, 1);
+  const ComplexDraft draft = draft_of({&soup, 1});
+  EXPECT_EQ(cancelled_among(draft, {0, 2, 3, 4, 5}), (std::vector<Index>{0, 2})) << "not 3 and 4: same side";
+  EXPECT_EQ(cancelled_among(draft, {0, 1, 2}).size(), 2U);
+  EXPECT_EQ(cancelled_among(draft, {5, 6}).size(), 2U);
+  const ComplexDraft complex = draft_of({&soup, 1}, true);
+  EXPECT_EQ(cancelled_among(complex, {0, 1, 2, 3, 4, 5, 6}).size(), 4U) << "all but one of each";
+}
+
 // drop_repeated
 
 TEST(Repeated, FacetsAreDropped) {

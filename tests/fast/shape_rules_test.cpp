@@ -82,5 +82,29 @@ TEST(ShapeRules, WhatSurelyExceedsAQualityExceedsIt) {
   for (const unsigned count : sure) EXPECT_GT(count, 10000U);
 }
 
+TEST(ShapeRules, TheQualityIfAllowedIsTheQualityIfTheTetIsAllowed) {
+  std::mt19937 random(7);
+  const Plc plc;
+  const TetMesh mesh;
+  const remeshing::ThinShape thin(plc, mesh, 8, 0, nullptr);
+  const remeshing::SliverRule with_thin(2, &thin), without(2);
+  constexpr std::array<Index, 4> corners{0, 1, 2, 3};
+  std::array<unsigned, 2> allowed{}, refused{};
+  for (unsigned i = 0; i < 20000; ++i) {
+    const Corners p = any_tet(random);
+    const double above = std::uniform_real_distribution(-1.0, 0.5)(random);
+    const auto expect = [&](std::size_t which, const remeshing::ShapeRule& rule) {
+      const double quality = rule.quality(p, corners);
+      const bool may_be = quality > above && rule.allows(p, corners, quality);
+      EXPECT_EQ(rule.quality_if_allowed(p, corners, above), may_be ? quality : -1);
+      ++(may_be ? allowed : refused)[which];
+    };
+    expect(0, with_thin);
+    expect(1, without);
+  }
+  for (const auto& counts : {allowed, refused})
+    for (const unsigned count : counts) EXPECT_GT(count, 1000U);
+}
+
 }  // namespace
 }  // namespace collarmesh::shape_rules_test

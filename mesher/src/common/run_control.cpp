@@ -15,7 +15,7 @@ namespace collarmesh {
 class RunControl::Watch {
  public:
   Watch(Deadline deadline, const Execution& execution)
-      : watcher_([this, deadline, &execution](const std::stop_token& end) {
+      : flag_(execution.cancelled()), watcher_([this, deadline, &execution](const std::stop_token& end) {
           using namespace std::chrono_literals;
           std::mutex mutex;
           std::unique_lock lock(mutex);
@@ -30,7 +30,7 @@ class RunControl::Watch {
   const std::atomic<bool>& flag() const { return flag_; }
 
  private:
-  std::atomic<bool> flag_{false}, passed_{false};
+  std::atomic<bool> flag_, passed_{false};
   std::jthread watcher_;
 };
 

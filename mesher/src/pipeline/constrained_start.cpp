@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <utility>
 
@@ -106,6 +107,23 @@ void require_few_misshapen(MeshJob& job) {
   if (tets_per_poor * misshapen > times_before * mesh.tets.size()) throw Hopeless();
 }
 
+/// Runs an attempt at a better mesh in at most half of the remaining time. Returns false if it ended early,
+/// as it does when its time is used up. Throws Ended if the run is cancelled.
+bool attempt(MeshJob& job, const std::function<void()>& work) {
+  constexpr double share_of_time = 0.5;
+  MeshResult& result = job.made.result;
+  const MeshStatus status = result.status;
+  try {
+    job.control.attempt(share_of_time, work);
+    return true;
+  } catch (const Ended&) {
+    if (result.status == MeshStatus::cancelled) throw;
+    result.status = status;
+    result.message.clear();
+    return false;
+  }
+}
+
 /// Divides strips of the complex like ladders, if it has any, and fills it with tetrahedra. Returns whether
 /// the mesh is good: hardly any tet misses its bounds or has a far too long edge, and the limit on vertices
 /// is kept. Vertices on opposite sides of a good mesh face each other, so no further work is needed:
@@ -122,7 +140,6 @@ bool is_good_with_ladders(MeshJob& job) {
                                               {0.81, 0.2, -0.55},
                                               {0.2, -0.81, 0.55}}};
   constexpr std::size_t always = 3, very_few = 5;
-  constexpr double share_of_time = 0.5;
   const double size = smallest_size(job.options.mesh, job.plc->bounds.diagonal());
   if (!may_have_ladders(job, size)) return false;
   MeshResult& result = job.made.result;
@@ -143,22 +160,16 @@ bool is_good_with_ladders(MeshJob& job) {
     const Plc divided = divided_strips(job, size, directions[i]);
     if (divided.points.size() == job.plc->points.size() || exceeds_vertices(job, divided.points.size()))
       return false;
-    const MeshStatus status = result.status;
     try {
-      if (best)
-        job.control.attempt(share_of_time, [&] { try_with(divided); });
-      else
+      if (!best)
         try_with(divided);
+      else if (!attempt(job, [&] { try_with(divided); }))
+        break;
     } catch (const PlcError&) {
-      continue;  // points of these ladders cannot be separated
-    } catch (const Ended&) {
-      if (!best || result.status == MeshStatus::cancelled) throw;
-      job.made.coarsening.reset();
-      result.status = status;
-      result.message.clear();
-      break;
+      // points of these ladders cannot be separated
     }
   }
+  job.made.coarsening.reset();
   if (!best) return false;
   result.mesh = std::move(*best);
   return true;
@@ -246,8 +257,8 @@ void settle(MeshJob& job, Hope hope) {
   // then.
   if (least == 0 && hope == Hope::any) {
     TetMesh mesh = made.result.mesh;
-    coarsen_and_improve(job, mesh, {}, true);
-    if (count_misshapen(job, mesh) == 0) made.result.mesh = std::move(mesh);
+    if (attempt(job, [&] { coarsen_and_improve(job, mesh, {}, true); }) && count_misshapen(job, mesh) == 0)
+      made.result.mesh = std::move(mesh);
     return;
   }
   // If more tets than this are poor, do not turn to thorough improvement, and begin another round only if the
@@ -259,10 +270,16 @@ void settle(MeshJob& job, Hope hope) {
   for (unsigned round = 0; round < most_rounds && least > 0; ++round) {
     TetMesh mesh = made.result.mesh;
     const auto before = made.improvement;
-    job.control.watch([&](const Execution& watched) {
-      remeshing::adapting::relax(mesh, *job.plc, job.refined_with, watched);
+    const bool in_time = attempt(job, [&] {
+      job.control.watch([&](const Execution& watched) {
+        remeshing::adapting::relax(mesh, *job.plc, job.refined_with, watched);
+      });
+      coarsen_and_improve(job, mesh, {}, thoroughly);
     });
-    coarsen_and_improve(job, mesh, {}, thoroughly);
+    if (!in_time) {
+      made.improvement = before;
+      return;
+    }
     const std::size_t poor = count_misshapen(job, mesh);
     if (poor >= least) {
       made.improvement = before;

@@ -7,9 +7,9 @@
 
 namespace collarmesh::repairing {
 
-/// Returns which of these triangles cancel. Of the triangles of one soup with the same corners, pairs of
-/// opposite orientation cancel; in a complex, where orientation has no meaning, all but one cancel. Cost:
-/// O(n log n).
+/// Returns which of these triangles cancel. Pairs of triangles of one soup that have the same corners and
+/// opposite orientations cancel; in a complex, where orientation has no meaning, all but one triangle with
+/// the same corners cancel. Cost: O(n log n).
 std::vector<Index> cancelled_among(const facets::ComplexDraft& draft, const std::vector<Index>& triangles);
 
 /// Drops the triangles that cancel (see `cancelled_among`) and returns their number. Cost: O(n log n).
