@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -64,50 +64,58 @@ TEST(MeshMaker, DoesNotRefineAgainWithTheSameBound) {
   }));
 }
 
-/// Settles the mesh of a box when its time is used up.
+/// Settles the mesh of a box. The time for it runs out at the beginning of a stage.
 class Settling : public ::testing::Test {
  protected:
-  Settling() : plc_(build_plc(std::vector{testing::box()})), job_(options(), execution_) {
-    MeshMaker(job_, nullptr).make(plc_, 1);
-  }
-
-  void settle_without_time() {
-    job_.control.attempt(1e-12, [&] {
-      while (!job_.control.execution().cancelled()) std::this_thread::yield();
-      settle(job_, pipeline::Hope::any);
-    });
-    EXPECT_EQ(job_.made.result.status, MeshStatus::complete);
-  }
-
-  static PipelineOptions options() {
+  Settling() : plc_(build_plc(std::vector{testing::box()})) {
+    execution_.progress = [this](const ProgressReport& report) {
+      if (is_settling_ && report.begins)
+        while (!job_->control.execution().cancelled()) std::this_thread::yield();
+      ran_out_ |= is_settling_ && report.begins;
+      return true;
+    };
     PipelineOptions options = LastWay::with_size();
     options.start = Start::constrained;
     options.mesh.time_limit = 1e6;
-    return options;
+    job_.emplace(options, execution_);
+    MeshMaker(*job_, nullptr).make(plc_, 1);
+  }
+
+  TetMesh& mesh() { return job_->made.result.mesh; }
+
+  void expect_unchanged() {
+    const TetMesh before = mesh();
+    const std::size_t candidates = job_->made.improvement.candidates;
+    job_->control.attempt(1e-6, [&] {  // a second
+      is_settling_ = true;
+      settle(*job_, pipeline::Hope::any);
+    });
+    EXPECT_TRUE(ran_out_);
+    EXPECT_EQ(job_->made.result.status, MeshStatus::complete);
+    EXPECT_EQ(job_->made.improvement.candidates, candidates);
+    EXPECT_EQ(mesh().points, before.points);
+    EXPECT_EQ(mesh().tets, before.tets);
   }
 
   Plc plc_;
   Execution execution_;
-  MeshJob job_;
+  std::optional<MeshJob> job_;
+  bool is_settling_ = false, ran_out_ = false;
 };
 
 TEST_F(Settling, KeepsAGoodMeshAtATimeLimit) {
-  const TetMesh before = job_.made.result.mesh;
-  ASSERT_EQ(pipeline::count_misshapen(job_, before), 0U);
-  settle_without_time();
-  EXPECT_EQ(job_.made.result.mesh.tets, before.tets);
+  ASSERT_EQ(pipeline::count_misshapen(*job_, mesh()), 0U);
+  expect_unchanged();
 }
 
 TEST_F(Settling, KeepsAPoorMeshAtATimeLimit) {
-  TetMesh& mesh = job_.made.result.mesh;
-  const auto& tet = *std::ranges::find_if(
-      mesh.tets, [&](const auto& corners) { return mesh.features[corners[0]].dimension == 3; });
-  Point& p = mesh.points[tet[0]];
-  p = p + 0.999 * (mesh.points[tet[1]] - p);
-  const std::vector<std::array<Index, 4>> before = mesh.tets;
-  ASSERT_GT(pipeline::count_misshapen(job_, mesh), 0U);
-  settle_without_time();
-  EXPECT_EQ(mesh.tets, before);
+  const auto tet = std::ranges::find_if(
+      mesh().tets, [&](const auto& corners) { return mesh().features[corners[0]].dimension == 3; });
+  ASSERT_NE(tet, mesh().tets.end());
+  Point& p = mesh().points[(*tet)[0]];
+  p = p + 0.999 * (mesh().points[(*tet)[1]] - p);
+  ASSERT_GT(pipeline::count_misshapen(*job_, mesh()), 0U);
+  expect_unchanged();
 }
 
 PipelineResult with_findings(std::size_t tets, std::size_t findings, const char* guarantee = "thin_angles") {

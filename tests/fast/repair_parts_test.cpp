@@ -473,8 +473,10 @@ TEST(Snapping, OppositeDuplicatesCancelInPairs) {
   EXPECT_EQ(cancelled_among(draft, {0, 2, 3, 4, 5}), (std::vector<Index>{0, 2})) << "not 3 and 4: same side";
   EXPECT_EQ(cancelled_among(draft, {0, 1, 2}).size(), 2U);
   EXPECT_EQ(cancelled_among(draft, {5, 6}).size(), 2U);
-  const ComplexDraft complex = draft_of({&soup, 1}, true);
+  ComplexDraft complex = draft_of({&soup, 1});
+  complex.soup_is_complex.assign(complex.soup_is_complex.size(), true);
   EXPECT_EQ(cancelled_among(complex, {0, 1, 2, 3, 4, 5, 6}).size(), 4U) << "all but one of each";
+  EXPECT_EQ(cancelled_among(complex, {3, 4}).size(), 1U);
 }
 
 // drop_repeated

@@ -62,8 +62,7 @@ std::size_t Detours::take_all(std::vector<Index> tets, const std::function<bool(
 // Tries every tet once, worst first. Returns whether any detour was taken.
 bool Detours::take_round(std::vector<Index>& tets, Effort effort, const std::function<bool()>& stopped) {
   const auto is_good = [this](Index t) { return chooser_.poor_quality(t) == INFINITY; };
-  std::erase_if(tets, is_good);
-  sort_uniquely(tets, [this](Index t) { return std::pair(chooser_.poor_quality(t), t); });
+  sort_worst_first(tets);
   Asked& asked = asked_[static_cast<unsigned>(effort)];
   const std::uint32_t before = taken();
   const std::size_t count = tets.size();
@@ -78,6 +77,16 @@ bool Detours::take_round(std::vector<Index>& tets, Effort effort, const std::fun
     if (help(tet, effort)) note_changes(tets);
   }
   return taken() > before;
+}
+
+// Removes good tets and repeated ones, and sorts the others by quality.
+void Detours::sort_worst_first(std::vector<Index>& tets) const {
+  std::vector<std::pair<double, Index>> poor;
+  for (const Index t : tets)
+    if (const double quality = chooser_.poor_quality(t); quality < INFINITY) poor.emplace_back(quality, t);
+  sort_uniquely(poor);
+  tets.clear();
+  for (const auto& [quality, t] : poor) tets.push_back(t);
 }
 
 // Returns whether anything changed at a corner since the tet was tried.

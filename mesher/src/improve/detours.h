@@ -57,6 +57,7 @@ class Detours {
   bool exhausted() const;
   Change propose(Index tet);
   bool is_new_to(Index tet, const Asked& asked) const;
+  void sort_worst_first(std::vector<Index>& tets) const;
   bool take_round(std::vector<Index>& tets, Effort effort, const std::function<bool()>& stopped);
   bool help(Index tet, Effort effort);
   void note_changes(std::vector<Index>& tets);

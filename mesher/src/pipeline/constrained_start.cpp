@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "adapt/bring_to_size.h"
@@ -107,21 +108,29 @@ void require_few_misshapen(MeshJob& job) {
   if (tets_per_poor * misshapen > times_before * mesh.tets.size()) throw Hopeless();
 }
 
-/// Runs an attempt at a better mesh in at most half of the remaining time. Returns false if it ended early,
-/// as it does when its time is used up. Throws Ended if the run is cancelled.
-bool attempt(MeshJob& job, const std::function<void()>& work) {
-  constexpr double share_of_time = 0.5;
-  MeshResult& result = job.made.result;
-  const MeshStatus status = result.status;
+/// Runs an attempt at a better mesh in at most this share of the remaining time. Returns whether it came to
+/// its end in time; if not, the reports are as before. Throws Ended if the run is cancelled.
+bool attempt(MeshJob& job, double share_of_time, const std::function<void()>& work) {
+  PipelineResult& made = job.made;
+  const MeshStatus status = made.result.status;
+  const std::string message = made.result.message;
+  const auto coarsening = made.coarsening;
+  const auto improvement = made.improvement;
+  bool ended = false;
   try {
-    job.control.attempt(share_of_time, work);
-    return true;
+    job.control.attempt(share_of_time, [&] {
+      work();
+      job.control.stop_if_asked();
+      ended = true;
+    });
   } catch (const Ended&) {
-    if (result.status == MeshStatus::cancelled) throw;
-    result.status = status;
-    result.message.clear();
-    return false;
+    if (made.result.status == MeshStatus::cancelled) throw;
+    made.result.status = status;
+    made.result.message = message;
+    made.coarsening = coarsening;
+    made.improvement = improvement;
   }
+  return ended;
 }
 
 /// Divides strips of the complex like ladders, if it has any, and fills it with tetrahedra. Returns whether
@@ -163,7 +172,7 @@ bool is_good_with_ladders(MeshJob& job) {
     try {
       if (!best)
         try_with(divided);
-      else if (!attempt(job, [&] { try_with(divided); }))
+      else if (!attempt(job, 0.5, [&] { try_with(divided); }))
         break;
     } catch (const PlcError&) {
       // points of these ladders cannot be separated
@@ -249,6 +258,7 @@ void tetrahedralize(MeshJob& job, Hope hope) {
 void settle(MeshJob& job, Hope hope) {
   constexpr unsigned most_rounds = 6;
   constexpr std::size_t few = 20, within_reach = 50;
+  constexpr double share_of_time = 0.8;               // the stages that follow take little time
   if (job.refined_with.bounds.interior_node) return;  // coarsening would remove interior nodes
   PipelineResult& made = job.made;
   std::size_t least = count_misshapen(job, made.result.mesh);
@@ -257,8 +267,12 @@ void settle(MeshJob& job, Hope hope) {
   // then.
   if (least == 0 && hope == Hope::any) {
     TetMesh mesh = made.result.mesh;
-    if (attempt(job, [&] { coarsen_and_improve(job, mesh, {}, true); }) && count_misshapen(job, mesh) == 0)
+    const auto before = made.improvement;
+    const bool ended = attempt(job, share_of_time, [&] { coarsen_and_improve(job, mesh, {}, true); });
+    if (ended && count_misshapen(job, mesh) == 0)
       made.result.mesh = std::move(mesh);
+    else
+      made.improvement = before;
     return;
   }
   // If more tets than this are poor, do not turn to thorough improvement, and begin another round only if the
@@ -270,16 +284,13 @@ void settle(MeshJob& job, Hope hope) {
   for (unsigned round = 0; round < most_rounds && least > 0; ++round) {
     TetMesh mesh = made.result.mesh;
     const auto before = made.improvement;
-    const bool in_time = attempt(job, [&] {
+    const bool ended = attempt(job, share_of_time, [&] {
       job.control.watch([&](const Execution& watched) {
         remeshing::adapting::relax(mesh, *job.plc, job.refined_with, watched);
       });
       coarsen_and_improve(job, mesh, {}, thoroughly);
     });
-    if (!in_time) {
-      made.improvement = before;
-      return;
-    }
+    if (!ended) return;
     const std::size_t poor = count_misshapen(job, mesh);
     if (poor >= least) {
       made.improvement = before;

@@ -29,7 +29,8 @@ bool fill_rods(MeshJob& job);
 void tetrahedralize(MeshJob& job, Hope hope);
 
 /// Relaxes, coarsens and improves the mesh again, as long as that reduces the number of tets that miss their
-/// bounds. With Hope::good, throws Hopeless if many tets miss them. A time limit does not lose the mesh.
+/// bounds. With Hope::good, throws Hopeless if many tets miss them. If the time for a further attempt runs
+/// out, the mesh at hand stays.
 void settle(MeshJob& job, Hope hope);
 
 /// Mends flat tets of a refined and coarsened mesh that miss their bounds, by dividing edges so that vertices

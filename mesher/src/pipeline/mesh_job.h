@@ -15,7 +15,7 @@ struct MeshJob {
   /// Keeps a reference to `execution`.
   MeshJob(const PipelineOptions& asked_for, const Execution& execution)
       : given(with_profile(asked_for)), start(given.start), control(given, execution, made), budget(given) {}
-  MeshJob(const PipelineOptions&, Execution&&) = delete;
+  MeshJob(const PipelineOptions&, const Execution&&) = delete;
 
   bool exact() const { return static_cast<bool>(options.exact); }
   const Execution& execution() const { return control.execution(); }

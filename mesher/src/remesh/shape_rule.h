@@ -28,7 +28,8 @@ class ShapeRule {
   /// Returns whether an operation may make this tet, whose quality is given. A flat or an inverted tet comes
   /// here if it replaces a worse one.
   virtual bool allows(const Corners& p, const std::array<Index, 4>& corners, double quality) const = 0;
-  /// Returns the quality if it is above `above` and an operation may make the tet, else -1.
+  /// Returns the quality if it is above `above`, which is at least -1, and an operation may make the tet;
+  /// else -1.
   virtual double quality_if_allowed(const Corners& p, const std::array<Index, 4>& corners,
                                     double above) const {
     const double quality = this->quality(p, corners);

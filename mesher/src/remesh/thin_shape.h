@@ -137,10 +137,10 @@ inline ExtremeAngles extreme_angles(const Corners& p) {
   return {angle(cosines.smallest_angle), angle(cosines.largest_angle)};
 }
 
-/// A tet whose angles and forced edges are looked at once, when they are first asked for.
+/// A tet that computes its extreme angles and its narrowness when they are first asked for, and keeps them.
 class MeasuredTet {
  public:
-  /// Keeps references.
+  /// Keeps references to the places and the vertices of the corners.
   MeasuredTet(const Corners& places, const std::array<Index, 4>& vertices)
       : places_(places), vertices_(vertices) {}
 

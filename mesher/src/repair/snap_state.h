@@ -83,8 +83,9 @@ class SnapState {
   std::vector<Done> done_;
 };
 
-/// Cancels duplicates of the triangles added since the last call; others cannot have become duplicates.
-/// Returns the number of cancelled triangles.
+/// Cancels duplicates among the triangles at those corners of the triangles added since the last call at
+/// which the fewest triangles meet. These include all triangles that have become duplicates. Returns the
+/// number of cancelled triangles.
 std::size_t cancel_new_duplicates(SnapState& state);
 
 }  // namespace collarmesh::repairing
