@@ -99,7 +99,7 @@ def write_grains(path, grains, seed):
     shifts = np.array(list(itertools.product((-1, 0, 1), repeat=3)), float)
     regions = []
     for k, point in enumerate(seeds):
-        # A grain that the cube's faces cut has a part for each of its images that reaches into the cube.
+        # A grain that the cube's faces cut is several regions: one for each periodic image that overlaps the cube.
         for shift in shifts:
             inside = region_point(point + shift, np.concatenate([seeds + s for s in shifts]))
             if inside is not None:

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Measures what ever thinner features cost, and whether volumes stay: families of bodies with one thin feature.
+"""Measures the cost of meshing as one feature of a body gets thinner, and whether volumes are kept.
 
 thinness.py [--families wedge step ...] [--thinness 1e-1 1e-2 ...] [--program collarmesh] [--limit 60]
             [--options '--order 2']

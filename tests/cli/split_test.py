@@ -46,7 +46,7 @@ class Splitting(ProgramTest):
 
     def test_unknown_names_come_before_the_work(self):
         self.expect(2, self.crack, "-o", self.out, "--split", "cracks",
-                    says=["no patch is called 'cracks'; only patches inside can be split: 7"])
+                    says=["no patch is called 'cracks'; only internal patches can be split: 7"])
         self.expect(2, self.crack, "-o", self.out, "--split", "1", says=["patch '1' lies on the boundary"])
         self.expect(2, self.box, "-o", self.out, "--keep-apart", says=["no two regions touch"])
         self.expect(2, self.box, "-o", self.out, "--cohesive", says=["add split or keep-apart"])

@@ -9,10 +9,10 @@
 
 namespace collarmesh::brep {
 
-/// Makes closed solids and internal faces that touch share faces, edges and vertices (general fuse), and
-/// assigns the common part of solids to one of them or to a new region, with a note. Leaves out solids and
-/// faces if the boxes of their faces meet no boxes of other solids and faces. Solids whose fuse fails stay
-/// unchanged, with a note; their surfaces must be cut later.
+/// Where closed solids and internal faces touch, lets them share faces, edges and vertices (general fuse),
+/// and assigns the common part of solids to one of them or to a new region, with a note. Leaves out solids
+/// and faces if the boxes of their faces meet no boxes of other solids and faces. Solids whose fuse fails
+/// stay unchanged, with a note; their surfaces must be cut later.
 void share_faces(const std::string& file, const CadOptions& options, Topology& topology);
 
 using Fuse = std::shared_ptr<BOPAlgo_Builder>;

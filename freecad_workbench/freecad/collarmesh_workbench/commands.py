@@ -152,7 +152,7 @@ class Addition(Command):
 
 
 class Size(Addition):
-    """Adds a size by place."""
+    """A command that adds an object asking for a size in a sphere, a box or a cylinder, or near faces and edges."""
 
     def __init__(self, kind, menu_text, tool_tip):
         self.kind, self.icon, self.menu_text, self.tool_tip = kind, icon_of(kind), menu_text, tool_tip

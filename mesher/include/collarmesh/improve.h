@@ -16,13 +16,13 @@ struct ImproveOptions {
   Bounds bounds = {};        ///< bounds that no new tet breaks
   double thin_above = 0;  ///< radius-edge ratio above which later stages call tets thin; 0: the bound on the
                           ///< ratio
-  bool move_vertices = true;   ///< also move, insert and remove vertices instead of only changing connections
-  bool keep_vertices = false;  ///< insert and remove no vertices for a poor tet with thin tets at its corners
-                               ///< (a coarsened mesh has as few vertices as it needs), unless an angle of
-                               ///< the poor tet exceeds the bound for thin tets
-  double edges_per_hole = 0;   ///< as MeshOptions::edges_per_hole
-  unsigned passes = 3;         ///< maximum number of passes, each over the tets that are still poor
-  unsigned threads = 0;        ///< maximum number of threads; 0: all cores. The result does not depend on it
+  bool move_vertices = true;  ///< also move, insert and remove vertices instead of only changing connections
+  /// Near thin tets, improve poor tets without inserting or removing vertices, because a coarsened mesh has
+  /// as few vertices as it needs. Tets with an angle above the largest one of thin tets are excepted.
+  bool keep_vertices = false;
+  double edges_per_hole = 0;  ///< as MeshOptions::edges_per_hole
+  unsigned passes = 3;        ///< maximum number of passes, each over the tets that are still poor
+  unsigned threads = 0;       ///< maximum number of threads; 0: all cores. The result does not depend on it
 };
 
 /// Returns the options of a level: 1 changes connections of tets below 15 degrees, 2 is the default, 3

@@ -26,8 +26,9 @@ enum class Profile {
   /// Makes exactly the assumptions of the proofs. All features that meet below 90 degrees are creases. A
   /// feature's point is inserted only if it is medial (paper, section 3.1); otherwise the balls around it are
   /// split. One bound on circumradius / shortest edge holds everywhere during the run, also in collars and
-  /// outside regions. A crease gets its balls when it is isolated. Sheets that face each other get no
-  /// exception; nothing is refined in blocks, coarsened or improved; sizes apply only if they are given.
+  /// outside regions. A crease gets its balls when the cells near it meet only features that contain it.
+  /// Cells between two sheets that face each other keep the bound, too. Nothing is refined in blocks,
+  /// coarsened or improved; sizes apply only if they are given.
   paper
 };
 

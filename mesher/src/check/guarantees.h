@@ -99,7 +99,8 @@ inline constexpr char curve_present[] = "curve_present";          ///< each curv
 inline constexpr char shell_orientation[] = "shell_orientation";  ///< faces of solids point outwards, those
                                                                   ///< of other surfaces are oriented alike
 
-/// Guarantees of cell shapes and of distances. A mesh that misses them may still get labels (labelled.h).
+/// Guarantees of the shapes of cells, of collars, and of distances, areas, volumes and thicknesses. A mesh
+/// that misses them may still get labels (labelled.h).
 inline constexpr std::array<std::string_view, 14> of_shapes{
     radius_edge,    thin_angles,     collar_dihedral, interior_node, collar_centre,
     collar_gap,     collar_disjoint, collar_cells,    region_volume, volume_kept,

@@ -12,8 +12,8 @@ namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double infinite = std::numeric_limits<double>::infinity();
-// The maximum number of rounds in which a place on a curve is moved back to the curve and then to the plane
-// of each of its patches. Few are enough: the planes nearly coincide, or meet in the curve.
+// The maximum number of rounds in which a place is brought within the limit of its curve, and then of the
+// plane of each of the curve's patches. Few are enough: the planes nearly coincide, or meet in the curve.
 constexpr int most_turns = 20;
 // Places are moved back to this share of the limit, so that rounding cannot leave them beyond it.
 constexpr double inside = 0.99;

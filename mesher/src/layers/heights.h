@@ -43,7 +43,7 @@ class Heights {
     length_ = others.length_;
     cause_ = others.cause_;
   }
-  /// Lowers a node's distance to `to`.
+  /// Reduces the distance by which a node is pushed to at most `to`; to 0 if too little would be left.
   void lower(Index node, double to, Cause cause);
   /// Lowers distances in gaps, so that the layers on both sides leave a part of each gap to the tets between
   /// them.

@@ -7,8 +7,8 @@
 
 namespace collarmesh {
 
-/// Returns a sentence saying that a refinement reached `most` vertices, the last one at `where`, and which
-/// two patches are nearest to that place. Cost: linear.
+/// Returns a clause that says that a refinement takes more than `most` vertices, the last one at `where`, and
+/// which two patches, if there are two, are nearest to that place.
 std::string describe_explosion(const Plc& plc, std::size_t most, const Point& where);
 
 }  // namespace collarmesh

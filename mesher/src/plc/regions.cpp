@@ -138,7 +138,8 @@ class RegionFinder {
 
   bool is_outer(Index shell) { return outer_shell_[components_.find(shell / 2)] == shell; }
 
-  // Numbers the inner shells and collects the claims of their facets.
+  // Numbers the bounded chambers, which are those of inner shells, and collects for each one which soups
+  // claim to have it inside.
   void find_bounded_chambers() {
     chamber_of_shell_.assign(2 * count_, none);
     for (Index side = 0; side < 2 * count_; ++side) {

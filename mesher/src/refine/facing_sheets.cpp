@@ -22,8 +22,8 @@ constexpr double least_spacing_per_radius = 0.35;
 constexpr double least_facing = 0.97;
 // In cells that span a gap, the ratio of height to longest edge is below this.
 constexpr double largest_narrowness = 0.5;
-// Beneath a vertex, a curve is split only in the middle part of a subsegment, at least this share of its
-// length away from its ends.
+// A curve is split opposite a vertex across the gap only if that place is at least this share of the
+// subsegment's length away from both ends of the subsegment.
 constexpr double least_part = 0.25;
 
 using Corners = std::array<Point, 4>;

@@ -63,8 +63,8 @@ class UnresolvedPoints {
     const Unresolved& p = points_[point];
     return p.vertex != none ? p.vertex : objects_[p.object].vertex;
   }
-  /// Returns whether a queue entry with this stamp is current. If the point is still needed, but the mesh has
-  /// become finer there since, queues it again, because other points may have larger balls now.
+  /// Returns whether a queue entry with this stamp is current. If it is not because the mesh has become finer
+  /// there since, queues the point again with its new priority, if it is still needed.
   bool is_due(Index point, std::uint32_t stamp);
   /// Queues a point again if it is still needed. For use after another point was inserted in its place.
   void queue_again(Index point) {

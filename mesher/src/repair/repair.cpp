@@ -280,8 +280,8 @@ class Repairer {
     if (!cut_what_nearly_coincides() || encloses_nothing_) return;
     const State valid = state();
     try_on([&] { snap_in_rounds(); });
-    // Cutting leaves corners that almost touch other facets. Within a small part of the tolerance there are
-    // few of them, so snapping settles.
+    // Cutting leaves corners that almost touch other facets. Collapse features once more within a small share
+    // of the tolerance: so few corners are that near that this hardly leads to new cuts.
     try_on([&] {
       const State clean = state();
       if (!collapse(grain * tolerance_).changed() || !cut_and_keep()) restore(clean);

@@ -15,12 +15,12 @@ struct CollapsedFeature {
   facets::Corners corners{none, none, none};  ///< sorted; the last one of an edge is `none`
 };
 
-/// Collapses the features of a complex that are smaller than `size` (absolute) in the draft that it was built
-/// from: curves to points, narrow patches and sharp tips of patches to curves. Keeps features with the kept
-/// tags of the options, curves with names, the patches of a group if all are small, and patches around
-/// regions thinner than the size. Returns the features that it chose for collapse. Some of them may stay or
-/// be restored later; `gone_from` finds those that are gone. Corners move by less than the size; surfaces
-/// stay closed, but facets may intersect. Cost: O(n log n).
+/// Finds the features of `plc` that are smaller than `size` (absolute), and collapses them in `draft`, from
+/// which `plc` was built: curves to points, narrow patches and sharp tips of patches to curves. Keeps the
+/// features that `kept_patches` and `kept_curves` of the options name, curves with names, the patches of a
+/// tag if all of them are small, and patches around regions thinner than the size. Returns the features that
+/// it chose for collapse. Some of them may stay or be restored later; `gone_from` finds those that are gone.
+/// Corners move by less than the size; surfaces stay closed, but facets may intersect. Cost: O(n log n).
 std::vector<CollapsedFeature> collapse_in_draft(facets::ComplexDraft& draft, const Plc& plc, double size,
                                                 const RepairOptions& options, Work& work);
 

@@ -47,12 +47,13 @@ class PatchChoice {
       const std::set<Tag> tags = tags_named(text, 2, names);
       const auto named = [&](const Candidate& candidate) { return tags.contains(candidate.tag); };
       if (std::ranges::none_of(all, named))
-        throw OptionError(fmt::format("split: no patch is called '{}'; only patches inside can be split: {}",
-                                      text, internal_patches(names, all)));
+        throw OptionError(
+            fmt::format("split: no patch is called '{}'; only internal patches can be split: {}", text,
+                        internal_patches(names, all)));
       if (std::ranges::none_of(all, [&](const Candidate& each) { return named(each) && each.is_internal(); }))
         throw OptionError(
-            fmt::format("split: patch '{}' lies on the boundary; only patches inside can be split: {}", text,
-                        internal_patches(names, all)));
+            fmt::format("split: patch '{}' lies on the boundary; only internal patches can be split: {}",
+                        text, internal_patches(names, all)));
       tags_.insert(tags.begin(), tags.end());
     }
     if (keep_apart_ && std::ranges::none_of(all, [](const Candidate& each) { return each.is_interface(); }))
