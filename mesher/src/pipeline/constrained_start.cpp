@@ -108,9 +108,11 @@ void require_few_misshapen(MeshJob& job) {
   if (tets_per_poor * misshapen > times_before * mesh.tets.size()) throw Hopeless();
 }
 
-/// Runs an attempt at a better mesh in at most this share of the remaining time. Returns whether it came to
-/// its end in time; if not, the reports are as before. Throws Ended if the run is cancelled.
-bool attempt(MeshJob& job, double share_of_time, const std::function<void()>& work) {
+/// Runs an attempt at a better mesh in at most half of the remaining time, so that as much is left for later
+/// stages. Returns whether it came to its end in time; if not, the reports are as before. Throws Ended if the
+/// run is cancelled.
+bool attempt(MeshJob& job, const std::function<void()>& work) {
+  constexpr double share_of_time = 0.5;
   PipelineResult& made = job.made;
   const MeshStatus status = made.result.status;
   const std::string message = made.result.message;
@@ -172,7 +174,7 @@ bool is_good_with_ladders(MeshJob& job) {
     try {
       if (!best)
         try_with(divided);
-      else if (!attempt(job, 0.5, [&] { try_with(divided); }))
+      else if (!attempt(job, [&] { try_with(divided); }))
         break;
     } catch (const PlcError&) {
       // points of these ladders cannot be separated
@@ -258,7 +260,6 @@ void tetrahedralize(MeshJob& job, Hope hope) {
 void settle(MeshJob& job, Hope hope) {
   constexpr unsigned most_rounds = 6;
   constexpr std::size_t few = 20, within_reach = 50;
-  constexpr double share_of_time = 0.8;               // the stages that follow take little time
   if (job.refined_with.bounds.interior_node) return;  // coarsening would remove interior nodes
   PipelineResult& made = job.made;
   std::size_t least = count_misshapen(job, made.result.mesh);
@@ -268,7 +269,7 @@ void settle(MeshJob& job, Hope hope) {
   if (least == 0 && hope == Hope::any) {
     TetMesh mesh = made.result.mesh;
     const auto before = made.improvement;
-    const bool ended = attempt(job, share_of_time, [&] { coarsen_and_improve(job, mesh, {}, true); });
+    const bool ended = attempt(job, [&] { coarsen_and_improve(job, mesh, {}, true); });
     if (ended && count_misshapen(job, mesh) == 0)
       made.result.mesh = std::move(mesh);
     else
@@ -284,7 +285,7 @@ void settle(MeshJob& job, Hope hope) {
   for (unsigned round = 0; round < most_rounds && least > 0; ++round) {
     TetMesh mesh = made.result.mesh;
     const auto before = made.improvement;
-    const bool ended = attempt(job, share_of_time, [&] {
+    const bool ended = attempt(job, [&] {
       job.control.watch([&](const Execution& watched) {
         remeshing::adapting::relax(mesh, *job.plc, job.refined_with, watched);
       });
