@@ -143,6 +143,27 @@ TEST(WindingNumber, OnATriangleLeftOutIsTheMeanOfItsSides) {
   }
 }
 
+// Triangles that are far from the point are left out, too.
+TEST(WindingNumber, LeavesOutAllTrianglesOfANumber) {
+  const std::array<PolygonSoup, 2> spheres{testing::icosphere(1, 10), testing::icosphere(2, 10)};
+  std::vector<WeightedTriangle> triangles;
+  for (Index number = 0; number < 2; ++number)
+    for (Index f = 0; f < spheres[number].facet_count(); ++f) {
+      const auto c = spheres[number].polygon(f);
+      const std::vector<Point>& points = spheres[number].points;
+      triangles.push_back({{points[c[0]], points[c[1]], points[c[2]]}, 1, number});
+    }
+  const WindingNumber winding(std::move(triangles));
+  Random random(4);
+  for (int i = 0; i < 100; ++i) {
+    const Vector direction = random_direction(random);
+    for (const double radius : {0.5, 1.0, 1.5, 2.0, 2.5}) {
+      if (radius != 1) { EXPECT_NEAR(winding.at(radius * direction, 1), radius < 1 ? 1 : 0, 0.05); }
+      if (radius != 2) { EXPECT_NEAR(winding.at(radius * direction, 0), radius < 2 ? 1 : 0, 0.05); }
+    }
+  }
+}
+
 // arrange
 
 ComplexDraft pair_of(const std::array<Point, 3>& a, const std::array<Point, 3>& b, bool two_soups = false) {

@@ -1,5 +1,6 @@
 #include "repair/winding_number.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -37,6 +38,11 @@ WindingNumber::WindingNumber(std::vector<WeightedTriangle> triangles) {
   triangles_.reserve(triangles.size());
   for (const SpatialKey& key : keys) triangles_.push_back(triangles[key.item]);
   if (keys.empty()) return;
+  std::vector<Index> numbers;
+  numbers.reserve(triangles.size());
+  for (const WeightedTriangle& t : triangles) numbers.push_back(t.number);
+  std::ranges::sort(numbers);
+  numbers_are_shared_ = std::ranges::adjacent_find(numbers) != numbers.end();
   constexpr Index leaf_size = 8;
   tree_.add(
       0, static_cast<Index>(keys.size()), leaf_size, spatial_splits(keys),
@@ -63,6 +69,8 @@ WindingNumber::Summary::Summary(const Range& range) {
     for (std::size_t r = 0; r < 3; ++r)
       for (std::size_t c = 0; c < 3; ++c) moment[3 * r + c] += arm[r] * weighted[c];
     for (const Point& corner : t.corners) radius = std::max(radius, distance(corner, centre));
+    least_number = std::min(least_number, t.number);
+    greatest_number = std::max(greatest_number, t.number);
   }
 }
 
@@ -91,7 +99,7 @@ double WindingNumber::at_node(Index node, const Point& p, Index left_out) const 
   const Summary& n = tree_.bounds(node);
   const Vector r = n.centre - p;
   const double distance = norm(r);
-  if (distance > far * n.radius) {
+  if (distance > far * n.radius && !may_leave_out(n, left_out)) {
     // Computes the first two terms of the expansion about the centre.
     const double cubed = distance * distance * distance;
     double trace = 0, along = 0;
