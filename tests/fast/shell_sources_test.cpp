@@ -128,8 +128,10 @@ TEST(ShellSources, NodesFarFromTheExactGeometryStay) {
     EXPECT_EQ(made.projection->exceptions.size(), made.projection->vertices);
     EXPECT_GT(made.projection->vertices, 10U);
     EXPECT_NEAR(made.projection->largest_distance, 1, 0.01);
-    for (const auto& exception : made.projection->exceptions)
+    for (const auto& exception : made.projection->exceptions) {
       EXPECT_NEAR(std::hypot(exception.where.x, exception.where.y), 2, 0.01);
+      EXPECT_EQ(made.result.mesh.points[exception.point], exception.where);
+    }
   }
 }
 

@@ -346,15 +346,16 @@ bool ShapeRepair::approach(std::size_t most_vertices) {
       editor_.flip_around(v);
       changed = true;
     }
-    if (!changed) changed = approach_points();
+    if (!changed) changed = approach_points(limit);
     if (!changed) break;
   }
   return complex_.vertices.size() > before;
 }
 
-bool ShapeRepair::approach_points() {
+bool ShapeRepair::approach_points(std::size_t limit) {
   bool changed = false;
   for (const auto& far : editor_.far_points()) {
+    if (complex_.vertices.size() >= limit) break;
     const Index t = far.first;
     const Point& point = far.second;
     if (!complex_.triangles[t].alive()) continue;

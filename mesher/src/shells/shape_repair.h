@@ -45,7 +45,7 @@ class ShapeRepair {
   void note_tried(Index triangle, double wanted);
   /// Returns poor triangles, worst first: among `known` ones and those from number `first` on.
   std::vector<Index> poor_triangles(double wanted, std::span<const Index> known, Index first) const;
-  bool approach_points();
+  bool approach_points(std::size_t limit);
   bool improve_connections(Index triangle, double wanted, bool may_collapse);
   bool improve_by_moves(Index triangle);
   bool move_corners(Index triangle);

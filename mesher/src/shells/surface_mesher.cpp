@@ -333,9 +333,12 @@ ProjectReport SurfaceMesher::project(const ExactGeometry& exact, double most_exc
   assert(!complex_.vertices.empty());
   ProjectReport report;
   editor_.set_most_excess(most_excess);
+  Index next = 0;  // numbers the vertices as `mesh` does
   for (Index v = 0; v < complex_.vertices.size() && !execution_.cancelled(); ++v) {
     const auto [dimension, feature] = complex_.vertices[v].feature;
-    if (complex_.vertices[v].triangles.empty() || dimension == 0) continue;
+    if (complex_.vertices[v].triangles.empty()) continue;
+    const Index number = next++;
+    if (dimension == 0) continue;
     const Point before = complex_.vertices[v].point;
     const std::optional<Point> target = exact(dimension, feature, before);
     if (!target) continue;
@@ -347,7 +350,7 @@ ProjectReport SurfaceMesher::project(const ExactGeometry& exact, double most_exc
       continue;
     }
     report.largest_distance = std::max(report.largest_distance, way);
-    report.exceptions.push_back({v, dimension, feature, before, way});
+    report.exceptions.push_back({number, dimension, feature, before, way});
   }
   return report;
 }
