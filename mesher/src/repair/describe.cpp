@@ -18,7 +18,7 @@ std::string first_place(const RepairPlaces& places) {
 
 const char* plural(std::size_t count) { return count == 1 ? "" : "s"; }
 
-/// Describes the distances of the facets from the input.
+/// Describes the distances between the repaired facets and the input.
 std::string moved_text(const RepairReport& r) {
   if (r.largest_distance == 0 && r.largest_distance_of_input == 0) return "repair moved nothing";
   return fmt::format(
@@ -39,7 +39,7 @@ const char* kind_name(SmallFeature::Kind kind) {
   return "tip";
 }
 
-/// Lists the small features by kind, and the place of each.
+/// Lists the first few small features, with kind, tag, size and place.
 std::string small_features_text(const RepairReport& r) {
   constexpr std::size_t most_listed = 10;
   std::string text =

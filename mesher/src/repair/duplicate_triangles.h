@@ -8,8 +8,8 @@
 namespace collarmesh::repairing {
 
 /// Returns which of these triangles cancel. Pairs of triangles of one soup that have the same corners and
-/// opposite orientations cancel; in a complex, where orientation has no meaning, all but one triangle with
-/// the same corners cancel. Cost: O(n log n).
+/// opposite orientations cancel. In a complex, where orientation has no meaning, all triangles with the same
+/// corners cancel, except one. Cost: O(n log n).
 std::vector<Index> cancelled_among(const facets::ComplexDraft& draft, const std::vector<Index>& triangles);
 
 /// Drops the triangles that cancel (see `cancelled_among`) and returns their number. Cost: O(n log n).

@@ -9,7 +9,7 @@
 
 namespace collarmesh::repairing {
 
-/// A triangle with a multiplicity; negative: with opposite orientation.
+/// A triangle with a multiplicity, which is negative for the opposite orientation.
 struct WeightedTriangle {
   std::array<Point, 3> corners;
   int weight = 1;
@@ -24,9 +24,10 @@ class WindingNumber {
   /// Builds the hierarchy. Cost: O(n).
   explicit WindingNumber(std::vector<WeightedTriangle> triangles);
 
-  /// Returns the winding number at a point, leaving out triangles with the number `left_out`. At a point on a
-  /// triangle that is left out, the result is the mean of the winding numbers on the triangle's two sides.
-  /// Cost: O(log n) unless the surface is crumpled around the point.
+  /// Returns the winding number at a point, leaving out triangles with the number `left_out`, except those so
+  /// distant that they are taken together with others. At a point on a triangle that is left out, the result
+  /// is the mean of the winding numbers on the triangle's two sides. Cost: O(log n) unless the surface is
+  /// crumpled around the point.
   double at(const Point& p, Index left_out = none) const;
 
   /// Returns whether the point is so close to a triangle with another number than `left_out` that rounding
@@ -43,7 +44,7 @@ class WindingNumber {
     Point centre;       // centroid of the triangles, weighted by area
     double radius = 0;  // radius of the smallest ball around the centre that contains all corners
     Vector area{};      // sum of weight * area vectors
-    std::array<double, 9> moment{};  // sum of weight * (centroid - centre) x area vector, as a matrix
+    std::array<double, 9> moment{};  // sum of weight * (centroid - centre) * (area vector)^T, row by row
 
     Summary() = default;
     explicit Summary(const Range& range);

@@ -18,8 +18,8 @@ namespace collarmesh::repairing {
 PolygonSoup wrap(std::span<const PolygonSoup> soups, double alpha, double offset);
 
 /// Returns the largest distance of a surface of triangles from the facets of the soups, absolute, measured at
-/// corners, midpoints of edges and centroids of the surface's triangles. How far facets are from the surface
-/// does not count.
+/// corners, midpoints of edges and centroids of the surface's triangles. The distance is one-sided: facets
+/// may be farther from the surface.
 double largest_distance_from(std::span<const PolygonSoup> soups, const PolygonSoup& surface);
 
 /// Builds the complex of the surface that `wrap` makes with the offset of the options. Returns nothing if
