@@ -100,8 +100,8 @@ void require_range(const Box& box, Faults& faults) {
       {}, box.min);
 }
 
-// Unites close points, which a sweep finds. Its direction is one to which faces of real parts are hardly ever
-// orthogonal, so that few points share a position along it.
+// Finds equal and close points by a sweep, and unites them. Faces of real parts are hardly ever orthogonal to
+// the direction of the sweep, so few points have the same position along it.
 DisjointSets find_close(const std::vector<Point>& points, const Box& bounds, double distance_limit) {
   const Vector direction{0.6180339887, 0.5381966011, 0.5731523012};
   const Point centre = bounds.centre();

@@ -357,11 +357,11 @@ class Splitter {
 
   TetMesh& mesh_;
   const SplitOptions& options_;
-  FaceFinder finder_;                          // finds faces before the split by corners
+  FaceFinder finder_;                          // faces before the split, by their corners
   std::vector<std::array<Index, 4>> tets_;     // after the split
   std::vector<std::array<Index, 6>> mids_;     // after the split
-  std::vector<bool> chosen_;                   // by face
-  std::vector<bool> marked_;                   // nodes of chosen faces
+  std::vector<bool> chosen_;                   // by face before the split: whether it is split
+  std::vector<bool> marked_;                   // by node: whether it is a node of a chosen face
   std::vector<Beside> beside_;                 // by face with a marked corner: the tets beside it
   std::vector<Index> copies_;                  // by node: the number of its copies
   std::map<Tag, SplitReport::Patch> patches_;  // by tag before the split
