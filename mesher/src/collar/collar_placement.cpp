@@ -33,8 +33,9 @@ constexpr double sample_step = 0.5;  // distance between samples along a curve, 
 // after shrinking: the lines from a point of the two balls' circle to their centres meet at an angle of at
 // most 90 degrees.
 constexpr double step_per_radius = 1.2;
-// Mesh vertices nearer than this, in radii, to the previous centre or to the last one do not become centres.
-// Parts longer than `step_per_radius` are divided into equal steps, which are at least this long, too.
+// Mesh vertices nearer than this, in radii, to the previous centre or to the curve's last centre do not
+// become centres. Parts longer than `step_per_radius` are divided into equal steps, which are at least this
+// long, too.
 constexpr double least_step_per_radius = step_per_radius / 2;
 
 // Lowers values until none exceeds a neighbour by more than `slope` times the distance between their

@@ -72,8 +72,8 @@ class CollarSystem {
   /// Places balls on all creases. Their radii are at most a third of the gap size and at most `options.size`,
   /// then shrunk by random shares of up to 2% (seeded), so that the spheres are in general position. On
   /// smooth curves and patches the balls are so small that the cells inside them stay within
-  /// `options.tolerance`. Throws PlcError where a ball would be too small (`too_small`). Cost: O((n + b) log
-  /// n) for n elements of the complex and b balls.
+  /// `options.tolerance`. Throws PlcError where a ball would be too small (`too_small`). Cost for n elements
+  /// of the complex and b balls: O((n + b) log n).
   CollarSystem(const Plc& plc, std::span<const Point> points, std::span<const Crease> creases,
                const CollarOptions& options);
 

@@ -8,7 +8,7 @@
 namespace collarmesh {
 
 /// The outcome of a refinement. Parts report here what they could not guarantee; the loop queries it.
-/// Invariant: the first of several messages is kept, unless the refinement is stopped.
+/// Invariant: of several messages the first one is kept, but that of `stop` replaces any other.
 class Outcome {
  public:
   static constexpr const char* advice_at_floor =
