@@ -131,7 +131,7 @@ class Cutter {
     return true;
   }
 
-  // Computes a piercing point once for all triangles at the edge.
+  // Returns the point where an edge pierces a triangle. Computes it once for all triangles at the edge.
   ExactPoint piercing(const Edge& edge, const facets::Corners& t, Index number) {
     const auto [at, added] = piercings_.try_emplace({edge[0], edge[1], number});
     if (!added) return at->second;

@@ -20,8 +20,8 @@ struct ArrangementReport {
 
 /// The merges of near corners that `arrange` keeps.
 enum class KeptMerges {
-  all,  ///< all; merging pauses or resumes after each round of cutting that does not lower the number of
-        ///< intersections
+  all,  ///< all merges; merging pauses, or resumes, after each round of cutting that does not lower the
+        ///< number of intersections
   where_nothing_meets  ///< only merges at places where no facets intersect afterwards
 };
 

@@ -73,9 +73,9 @@ double diagonal_of(std::span<const CornerPoints> triangles) {
   return box.diagonal();
 }
 
-/// A search for the sample that is farthest from a surface among those outside. Winding numbers cost far more
-/// than distances, so they are only computed for the farthest of many samples. If a sample is inside, so is
-/// every sample that is nearer to it than the surface.
+/// A search for the sample that is farthest from a surface, among the samples that it does not enclose.
+/// Winding numbers cost far more than distances, so they are only computed for the farthest of many samples.
+/// If a sample is inside, so is every sample that is nearer to it than the surface.
 class FarthestOutside {
  public:
   explicit FarthestOutside(const WindingNumber& winding) : winding_(winding) {}

@@ -18,8 +18,8 @@ std::size_t cancel_duplicates(facets::ComplexDraft& draft);
 /// Returns whether the oriented surface encloses almost no volume, like a surface that is double everywhere.
 bool is_two_sided(const facets::ComplexDraft& draft);
 
-/// Drops all copies but one of each triangle in those components that are closed surfaces afterwards. If any
-/// were dropped, orients all components consistently, and outwards if closed. A component is connected by
+/// Keeps only one of the copies of each triangle in those components that are closed surfaces afterwards. If
+/// any were dropped, orients all components consistently, and outwards if closed. A component is connected by
 /// corners. Returns the number of dropped triangles. Cost: O(n log n).
 std::size_t keep_one_side(facets::ComplexDraft& draft);
 

@@ -138,8 +138,8 @@ class Repairer {
   bool encloses_nothing() const { return encloses_nothing_; }
 
   /// Measures how much of the volume that the input encloses is lost, for surfaces that are closed or nearly
-  /// so. Returns zeros if a soup is a complex, and if all parts of the input outside the result are near the
-  /// result, because little volume can be lost then.
+  /// so. Returns zeros if a soup is a complex. Also returns zeros if all parts of the input outside the
+  /// result are near the result, because little volume can be lost then.
   KeptVolume kept_volume(const RepairReport& report) const {
     constexpr double far = 10;  // in tolerances
     const bool any_complex = std::ranges::any_of(draft_.soup_is_complex, [](bool b) { return b; });
@@ -263,7 +263,7 @@ class Repairer {
     return tag + 1;
   }
 
-  /// A saved draft and report, for undoing steps that leave intersections.
+  /// A saved draft and report, for undoing steps that fail.
   struct State {
     ComplexDraft draft;
     RepairReport report;

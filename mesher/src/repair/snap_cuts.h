@@ -70,7 +70,7 @@ class SnapCuts {
 
   SnapState& state_;
   std::map<Edge, std::vector<OnEdge>> on_edge_;
-  std::map<Index, std::vector<Index>> inside_;  // by triangle
+  std::map<Index, std::vector<Index>> inside_;  // by triangle: points inside it
   std::map<Index, std::vector<Edge>> along_;    // by triangle: edges that come near it
 };
 

@@ -39,8 +39,8 @@ class Snapper {
 
   SnapReport run() {
     if (knows_some_) cancel_new_duplicates();
-    // Snapping corners adds few triangles, except where triangles run along each other. This limit ends the
-    // snapping there.
+    // Snapping corners adds few triangles, except where triangles run along each other. In that case, this
+    // limit ends the snapping.
     const std::size_t count = state_.triangles().count();
     most_triangles_ = count / (what_ == SnapWhat::corners ? 4 : 1) + count + 1000;
     if (ComplexDraft before = draft_; !snap_all_corners())

@@ -12,7 +12,7 @@ namespace collarmesh::repairing {
 /// intersections. It lies outside of the facets: about `offset` away at its corners, mostly less than three
 /// times `offset` elsewhere, and more where it spans a gap or a hole. It enters gaps and holes wider than
 /// about 2 `alpha`. `alpha` and `offset` are absolute, input units; `alpha` should be 2 to 4 times `offset`.
-/// Without triangles to wrap the result has no facets. Throws PlcError for points that are not finite and
+/// If there is nothing to wrap, the result has no facets. Throws PlcError for points that are not finite and
 /// indices out of range. Cost: O(n log n) for n triangles, and O(k log k) for a result of area k alpha^2.
 /// Portaneri, Rouxel-Labbe, Hemmer, Cohen-Steiner, Alliez 2022, by CGAL's Alpha_wrap_3.
 PolygonSoup wrap(std::span<const PolygonSoup> soups, double alpha, double offset);

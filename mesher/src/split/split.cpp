@@ -40,7 +40,8 @@ std::string internal_patches(const TagNames& names, const std::vector<Candidate>
 /// The internal patches that the options name.
 class PatchChoice {
  public:
-  /// Finds the patches. Throws OptionError for a name that no internal patch has.
+  /// Finds the patches. Throws OptionError for a name that no internal patch has, and if regions are to be
+  /// kept apart but none touch.
   PatchChoice(const SplitOptions& options, const TagNames& names, const std::vector<Candidate>& all)
       : keep_apart_(options.keep_apart) {
     for (const std::string& text : options.patches) {
@@ -239,7 +240,7 @@ class Splitter {
     }
   }
 
-  /// Gives the sides numbers and names.
+  /// Gives both sides of each split patch a tag and a name.
   void number_sides() {
     std::set<Tag> taken, kept;
     for (Index f = 0; f < mesh_.faces.size(); ++f) {
