@@ -109,8 +109,8 @@ void CurveChains::point_resolved(Index point) {
 }
 
 // Requests the balls of a crease whose chain was split and is resolved: queues a piece, because an attempt to
-// split it creates the balls. In the paper's profile the balls must wait until the crease is isolated, so it
-// only reports that the crease may have become isolated.
+// split it creates the balls. In the paper's profile, only reports that the crease may have become isolated:
+// the balls must wait until it is.
 void CurveChains::chain_resolved(Index curve, Index piece) {
   if (domain_.is_papers())
     open_creases_.touch(curve);
