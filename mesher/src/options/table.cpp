@@ -23,8 +23,8 @@ constexpr Kind kind_of(bool has_words) {
   return std::is_same_v<T, std::vector<std::string>> ? Kind::texts : Kind::sizes;
 }
 
-/// Access to a member of RunOptions, or of a struct in it. `has_words`: the member is an enumeration whose
-/// values the option gives as words.
+/// Access to a member of RunOptions, or of a struct in it. `has_words`: the member is a bool or an
+/// enumeration, and the option has a word for each of its values.
 template <bool has_words, auto... members>
 struct At {
   static auto& of(auto& options) { return (options.*....*members); }
@@ -66,14 +66,15 @@ constexpr Option::Place in_mesh = at<&RunOptions::mesh, member>;
 template <auto member>
 constexpr Option::Place in_bounds = at<&RunOptions::mesh, &MeshOptions::bounds, member>;
 
-/// The bound on the radius-edge ratio. Without this option tets may be thin anywhere.
+/// The bound on the radius-edge ratio. Setting it also restricts thin tets to creases and narrow places;
+/// without this option they may be anywhere.
 constexpr Option::Place asked_ratio{Kind::number, in_bounds<&Bounds::radius_edge>.get,
                                     [](const Option&, RunOptions& options, const OptionValue& value) {
                                       options.mesh.bounds.radius_edge = std::get<double>(value);
                                       options.mesh.bounds.thin_in_narrow_places_only = true;
                                     }};
 
-/// The dimension of the elements. Below 3, the facets need not bound a solid.
+/// The dimension of the elements. If it is below 3, the facets need not bound a solid.
 constexpr Option::Place asked_dimension{Kind::count, at<&RunOptions::dimension>.get,
                                         [](const Option&, RunOptions& options, const OptionValue& value) {
                                           options.dimension =
@@ -552,8 +553,8 @@ std::vector<Option> rank_options() {
            .help = "Degrees by which dihedral angles may go beyond those of the coarse mesh"}};
 }
 
-/// Adds rows, with the properties that most rows of a group share. In a row, the option's name is followed by
-/// the name of its value.
+/// Adds `options` as rows; `group` and `commands` apply to rows that do not set their own. In `options`, the
+/// name of an option is followed by the name of its value.
 void append(std::vector<Option>& table, std::vector<Option> options, const char* group, unsigned commands) {
   for (Option& option : options) {
     const std::size_t space = std::min(option.name.find(' '), option.name.size());
