@@ -29,7 +29,7 @@ class LocalChanges {
   /// The next two functions return the increase of the number of obstacles, or nothing if the change is not
   /// possible.
 
-  /// Replaces the two tetrahedra at a face by three at the edge that joins the corners beyond it.
+  /// Replaces the two tetrahedra at a face by three at the edge that joins the corners opposite it.
   std::optional<int> remove_face(const Tetrahedra::Face& face, const Obstacles& obstacles);
   /// Removes an edge by the triangulation of its ring that has the fewest obstacles. If every triangulation
   /// makes a tetrahedron without positive volume, or adds more than `most` obstacles, removes other edges
