@@ -30,8 +30,8 @@ std::string text(const Point& p) { return fmt::format("({:.9g}, {:.9g}, {:.9g})"
   throw PlcError(message, {{kind, message, std::move(points), at}});
 }
 
-/// Throws PlcError with the message "The `what` of the nodes ... at ...", followed by `wrong`. The nodes of
-/// the cell get their numbers in the whole mesh, `given`.
+/// Throws PlcError with the message "The `what` of the nodes ... at ...", followed by `wrong`. `given`: by
+/// node, its number in the whole mesh, which the message uses.
 template <std::size_t n>
 [[noreturn]] void refuse(std::string_view what, std::array<Index, n> cell, const std::vector<Index>& given,
                          const Point& at, std::string_view wrong,
@@ -254,8 +254,8 @@ class ComplexBuilder {
     plc_ = build_plc({&soup, 1}, options);
   }
 
-  /// Returns whether the mesh lists all edges where not exactly two sides meet or the tags of the two sides
-  /// differ.
+  /// Returns whether the mesh lists all edges at which one side ends, more than two sides meet, or two sides
+  /// with different tags.
   bool edges_are_complete() const {
     if (mesh_.edges.empty()) return false;
     struct EdgeUse {
