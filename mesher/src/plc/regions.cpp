@@ -138,8 +138,7 @@ class RegionFinder {
 
   bool is_outer(Index shell) { return outer_shell_[components_.find(shell / 2)] == shell; }
 
-  // Numbers the bounded chambers, which are those of inner shells, and collects for each one which soups
-  // claim to have it inside.
+  // Numbers the bounded chambers, one for each inner shell, and finds the soups that claim each of them.
   void find_bounded_chambers() {
     chamber_of_shell_.assign(2 * count_, none);
     for (Index side = 0; side < 2 * count_; ++side) {
