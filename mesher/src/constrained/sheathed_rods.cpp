@@ -213,8 +213,8 @@ class SheathFilling {
     const auto a = [&](std::size_t level) { return at(pair, level, k); };
     const auto b = [&](std::size_t level) { return at(pair, level, k + 1); };
     const auto o = [&](std::size_t level) { return at(apex, level, of_apex); };
-    // Between two levels of the pair lies a pyramid, which is cut into two tets; at a level of the pair, a
-    // tet between one apex and the next.
+    // The column consists of a pyramid, cut into two tets, between neighbouring levels of the pair and, at
+    // each level of the pair, a tet that also has two neighbouring apices.
     if (is_apex_between) {
       const std::size_t by_step = levels(pair);
       for (std::size_t j = 0; j < steps_ * by_step; ++j)
