@@ -1,4 +1,4 @@
-// Reads a size field from a description.
+// Reads a size field from its description in JSON.
 #include "collarmesh/size_field.h"
 
 #include <fmt/format.h>
