@@ -86,7 +86,7 @@ void add_mesh_options(CLI::App& app, MeshArguments& a) {
   add_options(app, Option::mesh, a);
 }
 
-/// Adds the file arguments of commands that make one file from several.
+/// Adds the arguments for the input files and the output file of `convert` and `repair`.
 void add_conversion_files(CLI::App& app, MeshArguments& a, const std::string& inputs) {
   app.add_option("IN", a.inputs, inputs + "; -: standard input")->required()->type_name("FILE");
   app.add_option("-o,--output", a.output, "The file to write; -: standard output")
@@ -182,8 +182,8 @@ bool output_is_among(const std::vector<std::string>& formats, const MeshArgument
   return std::find(formats.begin(), formats.end(), format_of_output(a)) != formats.end();
 }
 
-/// Rejects partitions for formats that do not keep them, and options that need partitions if there are none.
-/// `from_mesh`: the input is a mesh, which may be partitioned already.
+/// Rejects partitions if the output format cannot store them, and options that need partitions if the mesh
+/// has none. `from_mesh`: the input is a mesh, which may be partitioned already.
 void check_partitions(const MeshArguments& a, bool from_mesh) {
   if (a.partitions > 0 && !output_is_among(io::formats_with_partitions(), a))
     reject("--partitions", "{} has no place for partitions; use {}", format_of_output(a),

@@ -15,7 +15,7 @@ namespace {
 // The lowest bound on the radius-edge ratio for which termination is proved in the plane (doc/theory.md). On
 // test shapes refinement also ended with lower bounds, down to 1.1, but never with 1 (doc/limits.md).
 constexpr double proved_radius_edge = std::numbers::sqrt2;
-// The lowest bounds on collar angles that meshes of test shapes kept: without coarsening
+// The lowest bounds on collar angles, in degrees, that meshes of test shapes kept: without coarsening
 // (doc/architecture/collars.md), and after it (doc/architecture/coarsening.md).
 constexpr double reached_collar_angle = 130, reached_coarsened = 120;
 // Distances below or tolerances above these, relative to the diagonal, get a warning.

@@ -57,7 +57,7 @@ struct CadFiles::File {
   Index first_soup, soup_count;
   mutable std::optional<brep::CadMeasures> measures = {};  // measures of these soups, computed on first use
 
-  /// Replaces the soups' triangles by finer ones.
+  /// Replaces the triangles of this file's soups by those that `options` give.
   void cut_again(const brep::TessellationOptions& options, std::vector<PolygonSoup>& soups) {
     std::vector<PolygonSoup> own;
     ThreadLimit(threads).run([&] { own = model->tessellate(options); });
