@@ -57,8 +57,8 @@ std::string times_text(const StageTimes& times) {
   return text;
 }
 
-/// Returns the part of the report on changes that do not depend on the tolerance: filled holes, removed
-/// parts, a surface around everything.
+/// Returns the part of the report about changes that may exceed the tolerance, such as filled holes, removed
+/// parts, and a surface around everything.
 RepairReport beyond_tolerance(const RepairReport& report) {
   RepairReport rest;
   rest.turned = report.turned;
@@ -103,7 +103,7 @@ void append_curves(std::string& text, const Plc& plc, GroupNames names) {
     fmt::format_to(Out(text), "  ... and {} more curves (--json lists all)\n", curves.size() - listed);
 }
 
-/// Returns a predicted count: all digits below 10^12, three digits above.
+/// Returns a predicted count as text: all its digits below 10^12, three digits for larger counts.
 std::string count_text(double count) {
   return count < 1e12 ? fmt::format("{:.0f}", count) : fmt::format("{:.3g}", count);
 }
