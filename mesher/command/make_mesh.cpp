@@ -137,7 +137,7 @@ RepairOptions make_mesh(process::Process& process, const MeshArguments& argument
     if (!input.has_cad() || (report.phase != "project" && report.phase != "second order"))
       projecting.reset();
     else if (!projecting)
-      projecting.emplace(process.supervisor, "finding the nearest points of its faces and edges",
+      projecting.emplace(process.supervisor, "finding the nearest points of the shape's faces and edges",
                          input.cad_names());
     stages.update(report);
     return true;

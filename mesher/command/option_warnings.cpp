@@ -59,9 +59,9 @@ std::vector<std::string> option_warnings(const MeshArguments& a, const Plc& plc)
   if (a.mesh.bounds.distance > 0 && a.mesh.bounds.distance < small_distance * diagonal &&
       is_smooth_anywhere(plc))
     warnings.push_back(
-        fmt::format("--distance {:.6g} is {:.2g} of the diagonal: on smooth faces and curves the number of "
-                    "elements grows with its inverse; a larger distance costs less, as does --feature-angle "
-                    "0, which keeps the facets as they are.",
+        fmt::format("--distance {:.6g} is {:.2g} of the diagonal: so small a distance takes many elements "
+                    "on smooth faces and curves; choose a larger one, or --feature-angle 0, which keeps "
+                    "the facets as they are.",
                     a.mesh.bounds.distance, a.mesh.bounds.distance / diagonal));
   if (a.complex.planar_tolerance > large_planar_tolerance)
     warnings.push_back(fmt::format(

@@ -83,7 +83,7 @@ void CadFiles::read(const std::string& path, std::string_view format, const CadR
   const brep::Overlap overlap =
       reading.overlap == SolidOverlap::region ? brep::Overlap::region : brep::Overlap::first;
   const double patience = patience_with(path);
-  std::shared_ptr<void> work = guarded("reading it and finding its solids", path, patience);
+  std::shared_ptr<void> work = guarded("reading the file and finding its solids", path, patience);
   std::unique_ptr<brep::CadModel> model;
   ThreadLimit limit(reading.threads);  // also limits OpenCASCADE, which uses TBB's threads
   limit.run([&] { model = read_by_module(path, format, {.overlap = overlap}); });

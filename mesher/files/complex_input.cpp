@@ -68,7 +68,7 @@ std::string advice(const PlcError& error, const RepairOptions& options, bool of_
                              options.tolerance);
   const std::string wider = fmt::format("a larger --repair-tolerance than {:.3g}", options.tolerance);
   switch (options.mode) {
-    case RepairMode::off: return " Without --repair none the input would be repaired as far as possible.";
+    case RepairMode::off: return " Leave out --repair none to repair the input as far as possible.";
     case RepairMode::wrap:
       return fmt::format(
           " A closed surface around everything failed, too; {} or another --wrap-offset may help.", wider);

@@ -42,8 +42,9 @@ void require_place(const fs::path& target) {
   if (fs::is_directory(target, ignored))
     throw WriteError(fmt::format("{}: is a folder; name a file in another place", target.string()));
   if (fs::exists(target, ignored) && !fs::is_regular_file(target, ignored))
-    throw WriteError(fmt::format(
-        "{}: is not a regular file; name one, or - for standard output, with --format", target.string()));
+    throw WriteError(
+        fmt::format("{}: is not a regular file; name a regular file, or - with --format for standard output",
+                    target.string()));
 }
 
 /// Removes the folders of runs that were killed: nobody holds their locks. Skips young folders, which may be

@@ -332,7 +332,7 @@ class Sorter {
 
   void tell() const {
     tell(
-        outside_, "left out, as part of no face and outside of the closed solids or on their faces",
+        outside_, "left out, because only edges and vertices of faces or inside closed solids are meshed",
         "to get nodes on lines and points, give them as segments and points of a .poly file beside this one");
     tell(partly_, "partly outside of the closed solids, and left out there", "end edges at the faces");
     tell(meeting_,

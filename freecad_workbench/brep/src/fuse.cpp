@@ -309,8 +309,8 @@ void tell_overlaps(const std::string& file, const std::vector<Common>& overlaps,
                     names_of(overlaps[i].holders, topology.solids), text(overlaps[i].where),
                     overlaps[i].volume, overlaps[i].number));
   if (overlaps.size() > listed)
-    topology.notes.push_back(
-        fmt::format("{}: {} more overlaps of solids were resolved", file, overlaps.size() - listed));
+    topology.notes.push_back(fmt::format("{}: {} more overlaps of solids were treated in the same way", file,
+                                         overlaps.size() - listed));
 }
 
 /// Assigns each piece to a region. Returns the regions in the order of their numbers.
@@ -406,8 +406,8 @@ class SharedFaces {
     const bool more = names.size() > listed;
     names.resize(std::min(listed, names.size()));
     topology_.notes.push_back(fmt::format(
-        "{}: OpenCASCADE's general fuse does not find where {}{} and the solids around {} meet; their "
-        "triangles have to be cut",
+        "{}: OpenCASCADE's general fuse does not find where {}{} and the solids around {} meet, so repair "
+        "has to cut the triangles of these solids",
         file_, fmt::join(names, ", "), more ? ", ..." : "", text(place_of(left_out.front()))));
   }
 

@@ -258,10 +258,11 @@ class Tessellator {
 
   void tell(const TopoDS_Face& face, const MendedFace& mended, bool left_out) {
     const std::string done =
-        left_out ? "it is left out; its outline is open or crosses itself, or it has no area"
-                 : fmt::format(
-                       "it was triangulated {}{}", mended.how,
-                       mended.fits ? "" : ", and the points on its border are not those of its neighbours");
+        left_out
+            ? "it is left out; its outline is open or crosses itself, or it has no area"
+            : fmt::format(
+                  "it was triangulated {}{}", mended.how,
+                  mended.fits ? "" : ", but the points on its border differ from those of its neighbours");
     result_.notes.push_back(
         fmt::format("{}: {} around {} cannot be cut into triangles together with its neighbours; {}", file_,
                     topology_.name(face), text(place_of(face)), done));

@@ -222,7 +222,7 @@ Coarse make_coarse(process::Process& process, const command::MeshArguments& argu
   });
   if (const int other = first_that_differs(fingerprint(coarse.made.run.plc)); other >= 0)
     throw std::runtime_error(
-        fmt::format("{} makes another complex of the input than rank 0; do all ranks run the same program?",
+        fmt::format("{} makes another complex of the input than rank 0; run the same program on all ranks",
                     host_of(other)));
   return coarse;
 }
@@ -232,11 +232,13 @@ std::string text_of(const LevelReport& level, unsigned number) {
                                  number, level.tets, level.seconds, level.on_features);
   if (level.spoilt > 0 || level.made_room > 0)
     text += fmt::format(
-        "; placing these made {} tets poor or invalid; other vertices were moved {} times to mend tets",
+        "; placing these vertices made {} tets poor or invalid; to mend tets, other vertices were moved {} "
+        "times",
         level.spoilt, level.made_room);
   if (level.drawn_back > 0)
-    text += fmt::format("; {} vertices did not reach their places and are at most {:.3g} away",
-                        level.drawn_back, level.farthest_off);
+    text += fmt::format(
+        "; {} vertices did not reach their places on the shape and are at most {:.3g} away from them",
+        level.drawn_back, level.farthest_off);
   return text + '\n';
 }
 

@@ -257,8 +257,8 @@ def _size_field(field: SizeField) -> Any:
         raise OptionError(f"size_field has {len(values)} values, but must have one for each of {len(points)} points "
                           f"or {len(tets)} tets")
     if tets.size and not (0 <= tets.min() and tets.max() < len(points)):
-        raise OptionError(f"the tets of size_field have corners from {tets.min()} to {tets.max()}; its points are 0 to "
-                          f"{len(points) - 1}")
+        raise OptionError(f"the tets of size_field have corners from {tets.min()} to {tets.max()}; its points are "
+                          f"numbered from 0 to {len(points) - 1}")
     if len(values) != len(points):
         values = _on_points(tets, values, len(points))
     return {"points": points, "tets": tets[:, :4], "values": values, "cad_names": False}

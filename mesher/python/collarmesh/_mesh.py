@@ -419,9 +419,9 @@ class Mesh:
         on_points = given.ndim > 0 and len(given) == len(self.points)
         if given.ndim not in (1, 2) or not (on_points or len(given) == len(self.tets)):
             raise _core.OptionError(f"values must have a row for each of the {len(self.points)} points or "
-                                    f"{len(self.tets)} tetrahedra, not the shape {given.shape}")
+                                    f"{len(self.tets)} tetrahedra, but they have the shape {given.shape}")
         if outside not in ("nan", "nearest") or (outside == "nearest" and not on_points):
-            raise _core.OptionError('outside must be "nan", or for values on points "nearest"')
+            raise _core.OptionError('outside must be "nan" or, if the values are given on points, "nearest"')
         self._require_tets_alone("interpolate")
         where = {"name": "points", "points": reals(points, "points", 3)}
         tet, shares, nearest = _core.locate(self._arrays(), where)

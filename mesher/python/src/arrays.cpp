@@ -40,8 +40,8 @@ std::vector<Point> points(const py::dict& arrays, const char* key) {
 
 Index index(std::int64_t value, std::size_t size, const std::string& what) {
   if (value < 0 || value >= static_cast<std::int64_t>(size))
-    throw OptionError(
-        fmt::format("{} has the corner {}, but the points are 0 to {}", what, value, std::int64_t(size) - 1));
+    throw OptionError(fmt::format("{} has the corner {}, but points are numbered from 0 to {}", what, value,
+                                  std::int64_t(size) - 1));
   return static_cast<Index>(value);
 }
 

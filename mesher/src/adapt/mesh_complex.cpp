@@ -228,12 +228,11 @@ class ComplexBuilder {
       const Plc::Region& region = plc_.regions[mesh_.tet_region[t]];
       if (region.volume > 0) continue;
       const Point& at = mesh_.points[mesh_.tets[t][0]];
-      refuse(
-          PlcFault::Kind::intersection,
-          fmt::format("The tetrahedra of {} at {} have a volume of {:.9g} in all; remove them, or turn those "
-                      "that are inverted.",
-                      region.name, text(at), region.volume),
-          {given_[mesh_.tets[t][0]]}, at);
+      refuse(PlcFault::Kind::intersection,
+             fmt::format("The tetrahedra of {} at {} have a total volume of {:.9g}, which must be positive; "
+                         "remove them, or turn those that are inverted.",
+                         region.name, text(at), region.volume),
+             {given_[mesh_.tets[t][0]]}, at);
     }
   }
 

@@ -413,9 +413,9 @@ class Remeshing {
   void require_budget() {
     if (!is_full()) return;
     made_.result.status = MeshStatus::budget_hit;
-    made_.result.message =
-        fmt::format("{} vertices were reached; raise --max-vertices, or the sizes for a coarser mesh",
-                    options_.mesh.max_vertices);
+    made_.result.message = fmt::format(
+        "the limit of {} vertices is reached; raise --max-vertices, or the sizes for a coarser mesh",
+        options_.mesh.max_vertices);
     throw Ended();
   }
 

@@ -336,9 +336,9 @@ class AbaqusReader {
     const auto before = static_cast<Index>(mesh_.layers.pyramids.size());
     const auto numbers = join_pyramids(pairs, mesh_);
     if (!numbers)
-      lines_.fail(
-          fmt::format("the elements of the set {} are not pairs of halves of pyramids; export the mesh again",
-                      abaqus_halves));
+      lines_.fail(fmt::format(
+          "the set {} must list pairs of tetrahedra that are halves of a pyramid; export the mesh again",
+          abaqus_halves));
     for (CellPlace& place : places_)
       if (place.kind == CellKind::tet) place.index = (*numbers)[place.index];
     for (Index k = 0; k < pairs.size(); ++k)
@@ -376,8 +376,8 @@ class AbaqusReader {
     const std::int64_t steps = (last - first) / step;
     if (static_cast<std::size_t>(steps) > places_.size())
       lines_.fail(fmt::format(
-          "the range from {} to {} in steps of {} has more members than there are elements before it, {}",
-          first, last, step, places_.size()));
+          "the range from {} to {} in steps of {} has more members than the {} elements before it", first,
+          last, step, places_.size()));
     require_room(static_cast<std::size_t>(steps) + 1);
     for (std::int64_t k = 0; k <= steps; ++k) members.push_back(first + k * step);
   }

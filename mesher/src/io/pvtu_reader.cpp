@@ -88,9 +88,10 @@ void join_points(std::vector<NamedPiece>& pieces, VtkPiece& whole) {
       kept.push_back(member);
       whole.points.push_back(p);
     } else if (p != whole.points.back()) {
-      throw ReadError(fmt::format("{}: point {} is at ({}, {}, {}), but in another piece at ({}, {}, {})",
-                                  pieces[member.piece].path, member.number, p.x, p.y, p.z,
-                                  whole.points.back().x, whole.points.back().y, whole.points.back().z));
+      throw ReadError(fmt::format(
+          "{}: point {} is at ({}, {}, {}), but in another piece at ({}, {}, {}); save all pieces again",
+          pieces[member.piece].path, member.number, p.x, p.y, p.z, whole.points.back().x,
+          whole.points.back().y, whole.points.back().z));
     }
     pieces[member.piece].point_of[member.index] = static_cast<std::int64_t>(whole.points.size()) - 1;
   }
@@ -110,8 +111,10 @@ void join_cells(const std::vector<NamedPiece>& pieces, VtkPiece& whole) {
   sort_by_number(members);
   for (std::size_t i = 1; i < members.size(); ++i)
     if (members[i].number == members[i - 1].number)
-      throw ReadError(fmt::format("{}: cell {} occurs twice, and neither copy is marked as a ghost",
-                                  pieces[members[i].piece].path, members[i].number));
+      throw ReadError(
+          fmt::format("{}: cell {} occurs twice, and neither copy is marked as a ghost; mark one in the "
+                      "array vtkGhostType",
+                      pieces[members[i].piece].path, members[i].number));
   for (const PieceMember& member : members) {
     const auto& [path, piece, point_of] = pieces[member.piece];
     const auto size = static_cast<std::int64_t>(piece.connectivity.size());

@@ -115,8 +115,8 @@ void require_as_profile_sets(const RunOptions& options) {
   for (const Option& option : option_table()) {
     const OptionValue value = option.get(options);
     if (value == option.get(set) || value == option.get(defaults)) continue;
-    throw OptionError(fmt::format("{} {} contradicts profile paper, which sets {}; leave it out", option.name,
-                                  text_of(option, value), text_of(option, option.get(set))));
+    throw OptionError(fmt::format("{} {} contradicts profile paper, which sets {}; leave out one of the two",
+                                  option.name, text_of(option, value), text_of(option, option.get(set))));
   }
 }
 

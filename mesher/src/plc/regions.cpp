@@ -347,10 +347,11 @@ class RegionFinder {
                        "cavity's facets around, or remove it.",
                        description(p)));
     else
-      warn(p.point.point,
-           fmt::format("{} lies in the hole of the hole point {} of {} and has no effect; remove "
-                       "one of them, or close the facets that should part them.",
-                       description(p), text(hole->point.point), draft_.soup_names[hole->soup]));
+      warn(
+          p.point.point,
+          fmt::format("{} lies in the hole that the hole point {} of {} marks, and has no effect; remove one "
+                      "of these points, or close the facets that should separate them.",
+                      description(p), text(hole->point.point), draft_.soup_names[hole->soup]));
   }
 
   std::string description(const PlacedPoint& p) const {

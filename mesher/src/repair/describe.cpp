@@ -92,8 +92,8 @@ std::vector<std::string> describe(const RepairReport& r) {
         r.flakes.count, plural(r.flakes.count), r.tolerance, r.flakes.size, first_place(r.flakes)));
   if (r.second_sides > 0)
     lines.push_back(
-        fmt::format("{} triangle{} dropped that coincided with others of opposite orientation: the surface "
-                    "was double everywhere, and one layer is kept",
+        fmt::format("{} triangle{} dropped that coincided with others of opposite orientation: the whole "
+                    "surface had two coinciding layers, and one of them is kept",
                     r.second_sides, plural(r.second_sides)));
   if (r.merged.count > 0)
     lines.push_back(
@@ -101,7 +101,7 @@ std::vector<std::string> describe(const RepairReport& r) {
                     r.merged.count, plural(r.merged.count), r.merged.size, first_place(r.merged)));
   if (r.dropped.count > 0)
     lines.push_back(fmt::format(
-        "{} triangle{} of sheets without thickness outside of all solids removed, {:.2g}% of the area{}",
+        "{} triangle{} of sheets that enclose nothing removed outside of all solids, {:.2g}% of the area{}",
         r.dropped.count, plural(r.dropped.count), 100 * r.dropped.size, first_place(r.dropped)));
   if (r.collapsed.count > 0)
     lines.push_back(fmt::format(
@@ -110,8 +110,8 @@ std::vector<std::string> describe(const RepairReport& r) {
         first_place(r.collapsed)));
   if (r.thin_chambers.count > 0)
     lines.push_back(fmt::format(
-        "{} chamber{} between nearly coincident facets, thinner than the tolerance of {:.3g}, added to the "
-        "regions around {}, a volume of {:.3g}{}",
+        "{} space{} between nearly coincident facets, thinner than the tolerance of {:.3g}, became part of "
+        "the regions around {}, with a volume of {:.3g}{}",
         r.thin_chambers.count, plural(r.thin_chambers.count), r.tolerance,
         r.thin_chambers.count == 1 ? "it" : "them", r.thin_chambers.size, first_place(r.thin_chambers)));
   if (r.vanished.count > 0)

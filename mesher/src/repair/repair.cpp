@@ -502,7 +502,7 @@ void judge_volume(const KeptVolume& kept, Plc& plc) {
   constexpr double most = 0.5, told = 0.05;
   if (kept.lost > most * kept.input)
     throw LostVolume(
-        fmt::format("Its repair would lose {:.0f}% of the volume that the surface encloses (about {:.3g} in "
+        fmt::format("Repair would lose {:.0f}% of the volume that the surface encloses (about {:.3g} in "
                     "all), for example at {}.",
                     100 * kept.lost / kept.input, kept.input, text(kept.where)));
   if (kept.lost > told * kept.input)
@@ -676,11 +676,11 @@ RepairedPlc remove_noise(Plc plc, std::span<const PolygonSoup> soups, const PlcO
   }
   plc.warnings.push_back(
       {fmt::format("Features below the repair tolerance of {:.3g} stay, the first one at {}: removing them "
-                   "{}. They cost elements and time; another --repair-tolerance may help.",
+                   "{}. Such features cost elements and time; another --repair-tolerance may help.",
                    tolerance, text(*noise),
                    result.report.gave_up ? "takes too long"
                    : changes             ? "would make the complex invalid"
-                                         : "would make worse ones"),
+                                         : "would create worse features"),
        *noise});
   return with_lost_regions({std::move(plc), {}, {}}, soups);
 }
