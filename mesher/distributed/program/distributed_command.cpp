@@ -67,8 +67,8 @@ class Session {
                   failure.what()));
 }
 
-/// Does work on each rank that is not collective and may throw Stopped. If it does on some ranks, all ranks
-/// throw the Stopped of the first of these.
+/// Does work on each rank, like `agree`; the work may also throw Stopped. If it does so on some ranks, all
+/// ranks throw the Stopped of the first of these.
 void together(const std::function<void()>& work) {
   std::exception_ptr thrown;
   std::optional<process::Stopped> stopped;
@@ -334,8 +334,8 @@ double peak_bytes() {
   return 0;
 }
 
-/// Writes files under temporary names into a folder of rank 0. Rank 0 moves them to their places when all
-/// ranks are done.
+/// Writes the files of the mesh into a temporary folder that rank 0 creates. Rank 0 moves them to their
+/// places when all ranks are done.
 void write_files(process::Process& process, const command::MeshArguments& arguments, const ParallelMesh& mesh,
                  Report& report) {
   const bool first = Ranks(MPI_COMM_WORLD).rank == 0;

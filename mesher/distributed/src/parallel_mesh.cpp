@@ -91,7 +91,7 @@ void label_features(DM dm, const TetMesh& mesh) {
     codes[static_cast<std::size_t>(face)] = code;
     const PetscInt* edges = nullptr;
     call(DMPlexGetCone(dm, face, &edges));
-    for (std::size_t k = 0; k < 3; ++k)  // edges on no curve
+    for (std::size_t k = 0; k < 3; ++k)  // label its edges that are on no curve
       if (PetscInt& of_edge = codes[static_cast<std::size_t>(edges[k])]; of_edge < 0) of_edge = code;
   }
   std::vector<std::pair<PetscInt, PetscInt>> labels;

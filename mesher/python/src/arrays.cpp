@@ -62,7 +62,7 @@ std::vector<T> numbers(const py::dict& arrays, const char* key) {
   return {wide.begin(), wide.end()};
 }
 
-/// Returns an array that owns its values and is read-only.
+/// Returns a read-only array that owns its values.
 template <class T>
 py::array owned(std::vector<T> values, py::ssize_t columns) {
   auto kept = std::make_unique<std::vector<T>>(std::move(values));
@@ -75,7 +75,7 @@ py::array owned(std::vector<T> values, py::ssize_t columns) {
   return array;
 }
 
-/// Returns indices; `none` becomes -1.
+/// Returns an array of indices, with -1 for `none`.
 py::array index_array(const std::vector<Index>& items) {
   std::vector<std::int64_t> wide;
   wide.reserve(items.size());
