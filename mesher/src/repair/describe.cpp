@@ -101,7 +101,8 @@ std::vector<std::string> describe(const RepairReport& r) {
                     r.merged.count, plural(r.merged.count), r.merged.size, first_place(r.merged)));
   if (r.dropped.count > 0)
     lines.push_back(fmt::format(
-        "{} triangle{} of sheets that enclose nothing removed outside of all solids, {:.2g}% of the area{}",
+        "{} triangle{} of sheets that enclose nothing and lie outside of all solids removed, {:.2g}% of the "
+        "area{}",
         r.dropped.count, plural(r.dropped.count), 100 * r.dropped.size, first_place(r.dropped)));
   if (r.collapsed.count > 0)
     lines.push_back(fmt::format(
