@@ -50,15 +50,15 @@ def type_of(option):
 
 
 def default_of(option):
-    """Returns the default of a setting: 0 where the program chooses the value, and for shares of the diagonal, which
-    FreeCAD would show as 0."""
+    """Returns the default of a setting. It is 0 if the program chooses the value, and also for lengths relative to the
+    diagonal, which FreeCAD would show as 0."""
     if option["unit"] == "diagonal" or option["default"] is None:
         return type_of(option)()
     return type_of(option)(option["default"])
 
 
 def text_of(option):
-    """Returns the text of a setting, with what 0 stands for."""
+    """Returns the text of a setting. If the default is 0, the text says what 0 stands for."""
     if option["key"] in OWN_TEXTS:
         return ""
     text = option["help"].split("; 0:")[0]
@@ -80,7 +80,7 @@ def line_of(option):
 
 
 def table_of(program):
-    """Returns the text of the table for a program."""
+    """Returns the text of the table for the options of a program."""
     written = subprocess.run([program, "--generate", "options"], check=True, capture_output=True, text=True).stdout
     options = {}
     for option in json.loads(written):

@@ -4,9 +4,9 @@ licence inside.
 
     make_package.py OUTPUT [--site URL] [--maintainer NAME] [--email ADDRESS] [--date YYYY-MM-DD]
 
-OUTPUT ending in .zip holds a folder collarmesh, to be unpacked into FreeCAD's folder Mod. The options replace what
-package.xml of the sources says; its date is that of the last commit, or of SOURCE_DATE_EPOCH. The program is not in
-the add-on; packaging/make_archive.py makes an archive with it inside.
+OUTPUT ending in .zip holds a folder collarmesh, to be unpacked into FreeCAD's folder Mod. The options replace values of
+the sources' package.xml; without --date, the date is that of the last commit, or of SOURCE_DATE_EPOCH. The program is
+not in the add-on; packaging/make_archive.py makes an archive of both.
 """
 
 import argparse
@@ -28,7 +28,7 @@ FIRST_DATE = (1980, 1, 1, 0, 0, 0)  # the earliest date that a .zip file can hol
 
 
 def metadata(site=SITE, maintainer=MAINTAINER, email=EMAIL, day=""):
-    """Returns the text of package.xml."""
+    """Returns the text of package.xml. `day`: YYYY-MM-DD; empty: the default date."""
     text = (HERE / "package.xml").read_text(encoding="utf-8")
     for pattern, value in ((r"<version>.*?</version>", f"<version>{project.version()}</version>"),
                            (r"<date>.*?</date>", f"<date>{day or project.date()}</date>")):
@@ -54,7 +54,7 @@ def lay_out(folder, **details):
 
 
 def pack(folder, output):
-    """Packs the folder. The same files give the same bytes."""
+    """Packs a folder into a .zip file. Equal files give equal bytes."""
     with zipfile.ZipFile(output, "w", zipfile.ZIP_DEFLATED) as archive:
         for path in sorted(path for path in folder.rglob("*") if path.is_file()):
             entry = zipfile.ZipInfo(str(pathlib.Path("collarmesh") / path.relative_to(folder)), FIRST_DATE)
@@ -63,7 +63,7 @@ def pack(folder, output):
 
 
 def add_details(parser):
-    """Adds options for the details of `metadata`."""
+    """Adds command-line options for the arguments of `metadata`."""
     parser.add_argument("--site", default=SITE)
     parser.add_argument("--maintainer", default=MAINTAINER)
     parser.add_argument("--email", default=EMAIL)

@@ -2,9 +2,9 @@
 
     tests/freecad/run.py PROGRAM freecad_workbench/bench/predicted_table.py --gui -- FOLDER
 
-FOLDER has STEP parts; some are taken, spread by size. Prints seconds of the clock, and the processor time of
-FreeCAD and of the mesher, which depends less on other work of the machine. Importing the part into FreeCAD does not
-count."""
+FOLDER has STEP files; PARTS of them are measured, spread by file size. Prints the time of the clock, and the processor
+time of FreeCAD and of the mesher, which depends less on other work of the machine. The time of importing the part into
+FreeCAD is not included."""
 
 import os
 import pathlib
@@ -42,8 +42,8 @@ def used_by(process_id):
 
 
 def now(process=None):
-    """Returns seconds: on the clock, of FreeCAD's processor time, and of the mesher's, a child of this
-    process."""
+    """Returns three times in seconds: of the clock, FreeCAD's processor time, and the mesher's processor time.
+    `process`: the mesher if it runs, a child of this process."""
     used = [resource.getrusage(kind) for kind in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
     own, of_ended = (each.ru_utime + each.ru_stime for each in used)
     running = used_by(process.processId()) if process is not None and process.processId() else 0
@@ -65,7 +65,7 @@ view_provider.MeshTaskPanel = Watched
 
 
 def first_when(condition):
-    """Returns the time at which the condition was first met; None: never."""
+    """Returns the times (see `now`) at which the condition was first met; None: never."""
     return next((moment for moment, *what in Watched.told if condition(*what)), None)
 
 

@@ -1,4 +1,4 @@
-// The functions that programs look up by name when they load this module. The names contain the version,
+// The function that programs look up by name when they load this module. The name contains the version,
 // because module and program must have the same version.
 #include <memory>
 

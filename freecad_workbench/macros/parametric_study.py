@@ -1,4 +1,4 @@
-"""Varies a parameter of a shape. The part is meshed again each time, in the same object."""
+"""Varies a parameter of a shape, and meshes the part again each time, in the same mesh object."""
 
 import FreeCAD
 from freecad import collarmesh_workbench

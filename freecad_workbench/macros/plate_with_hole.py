@@ -1,4 +1,4 @@
-"""A plate with a hole, pulled: mesh, analysis by CalculiX, stress concentration. Run it as a macro or by
+"""A plate with a hole under tension: mesh, analysis by CalculiX, stress concentration. Run it as a macro or by
 `freecadcmd plate_with_hole.py`."""
 
 import FreeCAD
@@ -16,7 +16,7 @@ plate.Shape = Part.makeBox(80, WIDTH, THICKNESS).cut(hole)
 
 
 def face_at(x):
-    """Returns the name of the planar face with this x."""
+    """Returns the name of the face that lies in the plane with this x (mm)."""
     return next(f"Face{i}" for i, face in enumerate(plate.Shape.Faces, 1)
                 if face.BoundBox.XLength < 1e-9 and abs(face.BoundBox.XMin - x) < 1e-9)
 

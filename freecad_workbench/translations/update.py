@@ -1,10 +1,10 @@
 """Bring the translations up to date with the sources: translations/update.py [--check]
 
-Takes the texts of all calls of `translate`, `mark` and `doc` into each collarmesh_LANGUAGE.ts, where new ones are
-"unfinished" until someone translates them (Qt Linguist does it, or an editor), drops those that are gone, and makes the
-.qm files that FreeCAD reads by Qt's lrelease. The .qm files are kept with the sources, because whoever clones the
-add-on has no lrelease.
---check changes nothing and fails where a text has no translation.
+Copies the texts of all calls of `translate`, `mark` and `doc` into each collarmesh_LANGUAGE.ts. New texts are
+"unfinished" there until someone translates them, with Qt Linguist or an editor; texts that are gone are dropped. Then
+Qt's lrelease makes the .qm files that FreeCAD reads. They are kept with the sources, because whoever clones the add-on
+may lack lrelease.
+--check changes nothing and fails if a text has no translation.
 """
 
 import ast
@@ -21,7 +21,7 @@ OF_PROPERTIES = "App::Property"  # the context in which FreeCAD looks up texts o
 
 
 def texts(folder=SOURCES):
-    """Returns {(context, text)} of all sources except the one that defines the functions."""
+    """Returns {(context, text)} of all sources except translations.py, which defines the three functions."""
     paths = [path for path in sorted(folder.glob("*.py")) if path.name != "translations.py"]
     return set().union(*(texts_in(path.read_text(encoding="utf-8"), path.name) for path in paths))
 
@@ -76,7 +76,8 @@ def write(path, translations, language):
 
 
 def missing(path):
-    """Returns the texts without a translation in a file, and the translations without a text."""
+    """Returns two lists of (context, text): of the sources without a translation in a file, and of the file without a
+    text in the sources."""
     have, wanted = read(path), texts()
     return sorted(key for key in wanted if not have.get(key)), sorted(have.keys() - wanted)
 

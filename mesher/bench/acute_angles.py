@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Measures how the number of tets depends on the angle at creases, for wedges, fans, pyramids and needles, at a
-target edge length as large as the shapes. Compares with the figures of the feasibility study from which this
-project's collars come. That study called angles below 80 degrees acute, so its shapes are also meshed with
+target edge length as large as the shapes. Compares the numbers with those of the feasibility study from which this
+project's collars come. The study called angles below 80 degrees acute, so the shapes that it has are also meshed with
 `--crease-angle 80`. Prints a Markdown table."""
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ from tuning import SizeCache
 
 size = 1.0   # the shapes have sizes of about 1
 
-# A pyramid as high as it is wide, given by the apex angle of the cone around it.
+# A pyramid as high as it is wide: family, number of sides, and apex angle (degrees) of the cone around it.
 square_pyramid = ("pyramid", 4, 2 * math.degrees(math.atan(math.sqrt(0.5))))
 
-# The study's numbers of tets: outside collars, in stars, in books. Its program, which no longer exists, ran on shapes
-# like these.
+# The study's numbers of tets for each shape: outside collars, in stars, in books. The study's program, which no longer
+# exists, ran on similar shapes.
 study = {("wedge", 60, 1): (379, 109, 21), ("wedge", 40, 1): (437, 127, 26), ("wedge", 20, 1): (180, 33, 5),
          ("wedge", 5, 1): (2376, 132, 5), square_pyramid: (425, 148, 40), ("fan", 8, 0): (1755, 288, 56),
          ("fan", 16, 0): (4754, 746, 112), ("fan", 36, 0): (39853, 3856, 252), ("fan", 72, 0): (293000, 15286, 504)}

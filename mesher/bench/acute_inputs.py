@@ -1,5 +1,5 @@
-"""Members of the tests' families of shapes with acute angles, which the program acute_shape writes, as files for each
-mesher."""
+"""Shapes of the tests' acute families, as input files for each mesher. The program acute_shape generates the
+shapes."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ class Part:
 
 @dataclass
 class AcuteInput:
-    """An input that the program acute_shape writes. `family` and `parameters` are its arguments; `copies`:
-    the number of copies in a grid; 0: the shape alone."""
+    """An input that the program acute_shape writes. `family` and `parameters` are arguments of this program;
+    `copies` is the number of copies in a grid (0: the shape alone)."""
     program: Path
     family: str
     parameters: tuple[float, ...]
@@ -46,7 +46,7 @@ class AcuteInput:
 
     @property
     def files(self) -> list[str]:
-        """Returns one file for each solid. Call it after write("input")."""
+        """Returns the names of the files, one for each solid. Call it after write("input")."""
         return [f"input_{k + 1}.poly" for k in range(len(self.parts))]
 
     def write(self, path_without_suffix: Path) -> None:
@@ -62,8 +62,8 @@ class AcuteInput:
             out.write("0\n0\n")
 
     def write_geo(self, path: Path) -> None:
-        """Writes a file for Gmsh: curved shapes as triangles that Gmsh divides into patches, others as points,
-        lines, plane surfaces and volumes."""
+        """Writes a file for Gmsh. Curved shapes are written as triangles that Gmsh divides into patches; other
+        shapes as points, lines, plane surfaces and volumes."""
         self._generate(path.with_suffix(""))
         if self.feature_angle > 0:
             write_stl(self.parts[0], path.with_suffix(".stl"))
@@ -97,7 +97,7 @@ def read_part(path: Path) -> Part:
 
 
 def merge(parts: list[Part]) -> Part:
-    """Merges equal points, and facets with the same corners."""
+    """Returns all parts as one. Points at the same place become one point, facets with the same corners one facet."""
     numbers: dict[Corner, int] = {}
     facets: dict[frozenset, list[Loop]] = {}
     for part in parts:
@@ -121,8 +121,8 @@ def write_stl(part: Part, path: Path) -> None:
 
 
 class GeoModel:
-    """A model of some solids in Gmsh's built-in geometry. Facets with a free border, lone segments, and points and
-    segments in facets are embedded. Numbers start at 1."""
+    """A model of some solids in Gmsh's built-in geometry. Facets with a free border and lone segments are embedded in
+    volumes; points and segments in facets are embedded in surfaces. Numbers start at 1."""
 
     def __init__(self, parts: list[Part]):
         self.lines: dict[frozenset, int] = {}
@@ -156,8 +156,8 @@ class GeoModel:
         return self.numbers[p]
 
     def _line(self, a: int, b: int) -> int:
-        """Returns the line from a to b, negative if the line goes from b to a. A line begins at the point
-        with the lower number."""
+        """Returns the number of the line between a and b, with a minus sign if the line goes from b to a. Every
+        line begins at the point with the lower number."""
         key = frozenset((a, b))
         if key not in self.lines:
             self.lines[key] = len(self.lines) + 1

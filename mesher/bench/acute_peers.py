@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Compares collarmesh with TetGen and Gmsh, at one size, on shapes whose features meet at acute angles: whether
-each mesher ends, the number of tets, their angles, and the time. Prints a Markdown table."""
+"""Compares collarmesh with TetGen and Gmsh, at the same size, on shapes whose features meet at acute angles. Prints a
+Markdown table: whether each mesher ends, the number of tets, their angles, and the time."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def cell(mesher, shape: AcuteInput, folder: Path, program: Path) -> str:
 
 
 def radius_edge(result, made: dict) -> float:
-    """Returns the largest radius-edge ratio of all tets; in our meshes, of the tets outside collars."""
+    """Returns the largest radius-edge ratio: in our meshes, of the tets outside collars; in others, of all tets."""
     return (result.report["check"] if result.report else made)["max_radius_edge"]
 
 

@@ -2,11 +2,11 @@
 """Measures how the error of a solution falls with the number of unknowns, on meshes that are adapted to it
 (`Mesh.adapt` with `estimated_errors` and `sizes_from_errors`) and on meshes of uniform size: the edge of an L-shaped
 domain, Fichera's corner, and wires in a block with dolfinx; a plate with a hole and a notched bar with CalculiX.
-Then refines and coarsens meshes many times and measures how much volumes, curves and names change, and how well
-edge lengths fit the sizes.
+Then adapts meshes many times, so that they get finer and coarser in turn, and measures how much volumes, curves and
+names change, and how well edge lengths fit the requested sizes.
 
 Errors are relative errors in the energy norm. With linear elements they fall at best like the number of unknowns
-to the power of -1/3. Exact energies are approximated with elements of second order on the last adapted mesh. Prints
+to the power of -1/3. Elements of second order on the last adapted mesh approximate the exact energies. Prints
 Markdown tables."""
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ def fichera(collarmesh):
 
 
 def wires_in_block(collarmesh):
-    """Returns a block with two square holes through it, in place of two wires that are electrodes."""
+    """Returns a block with two square holes through it, where two wires (electrodes) would be."""
     points, facets = extruded([(-1, -1), (1, -1), (1, 1), (-1, 1)], 0, 0.5)
     del facets[:2]
     rims = []
@@ -75,8 +75,8 @@ def wires_in_block(collarmesh):
 
 
 def quarter_plate(collarmesh):
-    """Returns a quarter of a plate with a hole of 12 sides; the quarter is 4 by 4 by 0.4. The hole is not round,
-    because coarse and fine meshes would then have different domains."""
+    """Returns a quarter of a plate with a hole of 12 sides; the quarter is 4 by 4 by 0.4. With a round hole, coarse and
+    fine meshes would have different domains."""
     arc = [(math.cos(a), math.sin(a)) for a in np.linspace(math.pi / 2, 0, 4)]
     arc[0], arc[-1] = (0, 1), (1, 0)
     return collarmesh.Complex(*extruded([(4, 0), (4, 4), (0, 4), *arc], 0, 0.4))
@@ -92,21 +92,21 @@ def notched_bar(collarmesh):
 
 @dataclass
 class Solution:
-    values: Array    # values at the nodes, shape (n, k)
+    values: Array    # values at the mesh's nodes (n or n x k); empty for order 2 in dolfinx
     unknowns: int
     energy: float
     squared_error: Optional[float] = None    # energy of the error, where the solution is known
 
 
 class Poisson:
-    """Poisson's equation in dolfinx: a unit load or none, and values on the boundary."""
+    """Poisson's equation in dolfinx with a constant load, and values on the part `where` of the boundary (None: 0)."""
 
     def __init__(self, load: float, values: Optional[Callable[[Array], Array]], where: Callable[[Array], Array],
                  gradient: Optional[Callable] = None) -> None:
         self.load, self.values, self.where, self.gradient = load, values, where, gradient
 
-    # Returns the energy of the error: the exact energy minus the energy of the elements if there is a load; the
-    # reverse if values are given on the boundary.
+    # Returns the energy of the error. With a load it is the exact energy minus the energy of the finite elements;
+    # without a load, when values on the boundary drive the solution, it is the reverse difference.
     def squared_error(self, energy: float, exact: float) -> float:
         return exact - energy if self.load else energy - exact
 
@@ -134,13 +134,14 @@ class Poisson:
         squared = None
         if self.gradient:
             off = ufl.grad(found) - self.gradient(ufl, ufl.SpatialCoordinate(domain))
-            measure = ufl.dx(metadata={"quadrature_degree": 5})   # a quadrature rule without points on edges of tets
+            measure = ufl.dx(metadata={"quadrature_degree": 5})   # this rule has no points on edges of tets
             squared = dolfinx.fem.assemble_scalar(dolfinx.fem.form(ufl.dot(off, off) * measure))
         return Solution(values, space.dofmap.index_map.size_global, energy, squared)
 
 
 class Elasticity:
-    """A body in CalculiX, under traction along x at both ends, or at one end if it has planes of symmetry."""
+    """A body in CalculiX under traction along x: at both ends, or at one end if a plane of symmetry replaces the
+    other."""
 
     young, poisson = 1.0, 0.3
 
@@ -197,7 +198,7 @@ class Problem:
     domain: Callable
     size: float                   # target size of the first mesh
     equation: Poisson | Elasticity
-    expected_even: str            # the rate of meshes of uniform size by theory
+    expected_even: str            # rate at which errors fall on meshes of uniform size, by theory
 
 
 def near(a: Array, b: float) -> Array:
@@ -249,7 +250,7 @@ def problems(folder: Path, limit: float) -> list[Problem]:
 # Loops
 
 def rate(unknowns: list[float], errors: list[float]) -> float:
-    """Returns the exponent r of errors ~ unknowns^-r, by least squares."""
+    """Returns the exponent r in errors ~ unknowns^-r, fitted by least squares."""
     return -float(np.polyfit(np.log(unknowns), np.log(errors), 1)[0])
 
 
@@ -278,7 +279,7 @@ def study(collarmesh, problem: Problem, loops: int, first: int, growth: float, l
     passed = mesh.passed
     fine = mesh if isinstance(equation, Poisson) else with_second_order(collarmesh, mesh)
     exact = equation.solve(fine, order=2).energy
-    # Serves as the exact energy: its error is only some percent of that of first order on the last mesh.
+    # This energy serves as the exact one: its error is only some percent of the error of first order on this mesh.
     log(f"{problem.name}: energy of second order {exact:.8g}")
     even = []
     for share in (1, 0.7, 0.5, 0.35, 0.25, 0.18):
@@ -293,8 +294,8 @@ def study(collarmesh, problem: Problem, loops: int, first: int, growth: float, l
         return math.sqrt(max(squared, 0) / exact)
 
     by_size = ([s.unknowns for s in even], [error(s) for s in even])
-    # Estimates how many unknowns a mesh of uniform size needs for the error of the last adapted mesh, with the
-    # rate of the meshes of uniform size.
+    # Estimate how many unknowns a mesh of uniform size needs to reach the error of the last adapted mesh:
+    # extrapolate from the finest mesh of uniform size by the rate of these meshes.
     last, slope = adapted[-1], rate(*by_size)
     needed = by_size[0][-1] * (by_size[1][-1] / error(last)) ** (1 / slope)
     low, high = extreme_angles(mesh)
@@ -306,13 +307,13 @@ def study(collarmesh, problem: Problem, loops: int, first: int, growth: float, l
 
 
 def extreme_angles(mesh) -> tuple[float, float]:
-    """Returns the smallest and the largest dihedral angle in degrees."""
+    """Returns the smallest and the largest dihedral angle of the mesh, in degrees."""
     angles = dihedral_angles(mesh.points[mesh.tets])
     return float(angles[:, 0].min()), float(angles[:, 1].max())
 
 
 def dihedral_angles(p: Array) -> Array:
-    """Returns the smallest and the largest dihedral angle of each tet in degrees; `p`: its corners."""
+    """Returns the smallest and the largest dihedral angle of each tet, in degrees; `p`: the corners, (n, 4, 3)."""
     normals = [np.cross(p[:, b] - p[:, a], p[:, c] - p[:, a])
                for a, b, c in ((1, 3, 2), (0, 2, 3), (0, 3, 1), (0, 1, 2))]
     normals = [n / np.linalg.norm(n, axis=1)[:, None] for n in normals]
@@ -335,15 +336,16 @@ def lengths_by_curve(mesh) -> dict[int, float]:
 
 
 def change(now: dict, before: dict) -> float:
-    """Returns the largest relative change; infinite if keys differ."""
+    """Returns the largest relative change of a value; infinity if the keys differ."""
     if now.keys() != before.keys():
         return math.inf
     return max((abs(now[key] / before[key] - 1) for key in before), default=0.0)
 
 
 def up_and_down(collarmesh, path: Path, loops: int, log) -> list[str]:
-    """Adapts a mesh again and again to sizes that grow with the distance from a moving place, where they are small in
-    every other loop. Compares volumes, curves and names with those of the first mesh."""
+    """Adapts a mesh in each loop to sizes that grow with the distance from a place. The place moves from loop to loop,
+    and the sizes near it are small in every other loop. Compares volumes, curves and names with those of the first
+    mesh."""
     first = mesh = collarmesh.mesh(str(path))
     low, high = first.points.min(0), first.points.max(0)
     size = np.linalg.norm(high - low) / 20

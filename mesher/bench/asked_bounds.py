@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Checks whether meshes keep the bounds that options request: meshes each acute family and each file of a corpus with
 several collar angles, radius-edge ratios and a vertex ratio. The certificate judges each mesh, and so does an
-independent program ($COLLARMESH_JUDGE). The column "judge differs" counts the meshes where its findings or numbers
-differ from those of the report, or where a collar or a warning is absent that should be there. Prints a Markdown table
-with a row for each option, then the guarantees that were missed and the differences."""
+independent program, the judge ($COLLARMESH_JUDGE). The column "judge differs" counts the meshes for which the judge's
+findings or numbers differ from the report's, or for which an expected collar or warning is absent. Prints a Markdown
+table with a row for each option, then the guarantees that were missed and the differences."""
 
 from __future__ import annotations
 
@@ -50,9 +50,9 @@ class Outcome:
     collar: int = 0
     tets: int = 0
     warned: bool = False
-    missed: list[str] = field(default_factory=list)     # guarantees, by the certificate
+    missed: list[str] = field(default_factory=list)     # guarantees that the certificate says are missed
     differs: list[str] = field(default_factory=list)    # statements in which judge and report disagree
-    # whether all tets outside collars, thin ones too, keep the radius-edge ratio, by the judge
+    # whether, by the judge, all tets outside collars (thin ones included) keep the requested radius-edge ratio
     within: bool = False
     largest: float = 0         # largest dihedral angle in collars, by the judge
 
@@ -97,7 +97,7 @@ def asked(question: tuple[str, ...], option: str, default: float) -> float:
 
 
 def judge(judging: str, case: Case, question: tuple[str, ...], mesh: Path, report: dict) -> dict | str:
-    """Returns the judge's result, or the end of its output if that is not JSON."""
+    """Returns the judge's result, or the end of the judge's output if the output is not JSON."""
     check = report["check"]
     smallest_thin = min(8, report["complex"]["smallest_angle"] / 2,
                         check["min_forced_dihedral"] if check["forced_tets"] else math.inf)
@@ -113,7 +113,7 @@ def judge(judging: str, case: Case, question: tuple[str, ...], mesh: Path, repor
 
 
 def compare(outcome: Outcome, said: dict, report: dict, ratio: float) -> None:
-    """Compares the judge's findings and numbers with the report's."""
+    """Compares the judge's findings and numbers with the report's, and fills in `outcome`."""
     check, of = report["check"], said["quality"]
     inside, outside = of.get("in_collars", {}), of.get("outside_collars", {})
     outcome.within = outside.get("radius_edge_max", 0) <= ratio * (1 + 1e-9)

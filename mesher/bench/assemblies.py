@@ -3,8 +3,9 @@
 
 assemblies.py [--parts 50 200 500] [--program collarmesh] [--limit 300]
 
-A board carries blocks and cylinders, which touch it in one face, and housings, which stand on it with four feet.
-FreeCAD writes the STEP files. The third column is the share of the time that reading and fusing the solids takes."""
+The board carries blocks and cylinders, each of which touches it in one face, and housings, which stand on four feet.
+FreeCAD writes the STEP files. The column "reading" is the share of the time that goes into reading and fusing the
+solids."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
-// Meshes a surface by CGAL's Mesh_3 with its perturbation and exudation of slivers, for comparison with our
-// improvement: cgal_mesh INPUT.off SIZE DISTANCE OUT.mesh
+// Meshes the solid inside a surface by CGAL's Mesh_3, which then perturbs and exudes slivers, for comparison
+// with our improvement: cgal_mesh INPUT.off SIZE DISTANCE OUT.mesh
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/IO/File_medit.h>
 #include <CGAL/Mesh_complex_3_in_triangulation_3.h>
@@ -35,7 +35,8 @@ int main(int argc, char** argv) {
   domain.detect_features(30);
   const double size = std::strtod(argv[2], nullptr), distance = std::strtod(argv[3], nullptr);
   namespace parameters = CGAL::parameters;
-  // Bounds on circumradii: somewhat above those of a regular triangle and tetrahedron with edges `size`.
+  // facet_size and cell_size bound circumradii. These bounds are somewhat larger than the circumradii of a
+  // regular triangle and of a regular tetrahedron with edges of length `size`.
   const Criteria criteria(parameters::edge_size = size, parameters::facet_angle = 25,
                           parameters::facet_size = 0.7 * size, parameters::facet_distance = distance,
                           parameters::cell_radius_edge_ratio = 2, parameters::cell_size = 0.79 * size);

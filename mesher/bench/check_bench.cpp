@@ -41,7 +41,7 @@ void checking(benchmark::State& state, const PolygonSoup& soup) {
   count_tets(state, result);
 }
 
-// The argument is the diagonal divided by the size.
+// The argument is the diagonal divided by the target edge length.
 BENCHMARK_CAPTURE(meshing, box, unit_box())->Arg(20)->Arg(60)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(meshing, sphere, sphere(50))->Arg(20)->Arg(60)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(checking, box, unit_box())->Arg(20)->Arg(60)->Unit(benchmark::kMillisecond);

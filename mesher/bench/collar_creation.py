@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Compares two modes of placing the balls around creases, before the refinement (up-front) and during it (in-pass):
-tets, inserted vertices and time, summed over some seeds, for the acute families and for increasing numbers of
-wedges. Runs of the two modes alternate. Prints a Markdown table."""
+"""Compares two modes of placing the balls around creases: before the refinement (up-front), and during it (in-pass).
+Prints a Markdown table of tets, inserted vertices and time, summed over some seeds, for the acute families and for
+increasing numbers of wedges. Runs of the two modes alternate."""
 
 from __future__ import annotations
 

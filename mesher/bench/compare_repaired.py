@@ -1,20 +1,20 @@
 #!/usr/bin/env python3
 """Measures how far repaired surfaces are from their inputs, without the mesher's code: this script reads, compares and
-measures files with numpy and scipy alone, and FreeCAD tessellates CAD files.
+measures files with numpy and scipy (and meshio for .ply), and FreeCAD tessellates CAD files.
 
 compare_repaired.py FILES... [--program collarmesh] [--limit 30] [--samples 20000] [--options '--repair-tolerance 1e-4']
 
 Each file goes through `collarmesh repair`. Distances are measured from samples on the triangles of the result to
-the triangles of the input and the other way round, relative to the diagonal of the input. Samples of the input inside
-the result (winding number above 3/4) are left out, because repair is meant to remove walls inside. "told" is the
-larger of the two distances that the program reports.
+the triangles of the input and the other way round, relative to the diagonal of the input. Samples of the input that
+lie inside the result (absolute winding number above 3/4) are left out, because repair is meant to remove inner walls.
+"told" is the larger of the two distances that the program reports.
 
-The result's volume is what its triangles enclose (with several regions, the sum of the reported volumes). The input's
-volume is where the winding number is above 1/2 or below -1/2, estimated at random points of its box; for CAD files it
-is OpenCASCADE's volume of the solids. "differs" is the volume in which input and result disagree, estimated at these
-points, relative to the input's volume. Bodies are the input's connected parts that are closed; a body has changed if a
-point half-way between two of its opposite sides is inside before the repair and outside after it, or the reverse.
-Rows are sorted by distance, largest first."""
+The result's volume is the volume that its triangles enclose (with several regions, the sum of the reported volumes).
+The input's volume is that of the places with an absolute winding number above 1/2, estimated at random points of the
+input's box; for CAD files it is OpenCASCADE's volume of the solids. "differs" is the volume that is inside either the
+input or the result but not both, estimated at the same points, relative to the input's volume. Bodies are the input's
+connected parts that are closed. A body has changed if a point half-way between two of its opposite sides is inside
+before the repair and outside after it, or the reverse. Rows are sorted by distance, largest first."""
 
 from __future__ import annotations
 
@@ -65,7 +65,8 @@ def fans(polygons: list[list[int]]) -> list[tuple[int, int, int]]:
 
 
 def clipped(polygon: list[int], points: np.ndarray) -> list[tuple[int, int, int]]:
-    """Returns the triangles of a polygon: a fan of up to four corners; else ears, and a fan when no ear is left."""
+    """Cuts a polygon into triangles: into a fan if it has 3 or 4 corners, otherwise by clipping ears. The rest becomes
+    a fan when no ear is left."""
     if len(polygon) <= 4 and len(polygon) > 2:
         return fans([polygon])
     rest, triangles = list(polygon), []
@@ -133,7 +134,7 @@ def volume(triangles: np.ndarray) -> float:
 
 
 def samples_of(triangles: np.ndarray, count: int, random: np.random.Generator) -> np.ndarray:
-    """Returns `count` random points, distributed by area, and the centres of up to `count` triangles."""
+    """Returns `count` random points, evenly distributed over the area, and the centres of up to `count` triangles."""
     share = areas(triangles)
     chosen = triangles[random.choice(len(triangles), count, p=share / share.sum())]
     weights = random.dirichlet((1, 1, 1), count)
@@ -150,7 +151,7 @@ def to_segment(p: np.ndarray, a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def to_triangles(p: np.ndarray, t: np.ndarray) -> np.ndarray:
-    """Returns the distance of each point from the triangle in its row."""
+    """Returns the distances of points from triangles, row by row: of p[i] from t[i]."""
     a, b, c = t[:, 0], t[:, 1], t[:, 2]
     normal = np.cross(b - a, c - a)
     length = np.maximum(np.linalg.norm(normal, axis=1), 1e-300)
@@ -163,8 +164,8 @@ def to_triangles(p: np.ndarray, t: np.ndarray) -> np.ndarray:
 
 
 class Nearest:
-    """Distances to triangles. The triangles with the nearest centres give each point an upper bound; then all
-    triangles that may be nearer than this bound are measured."""
+    """Computes distances of points from triangles. The triangles whose centres are nearest to a point give an upper
+    bound of its distance; then all triangles that may be nearer than this bound are measured."""
 
     def __init__(self, triangles: np.ndarray, diagonal: float):
         self.triangles = self.divided(triangles, diagonal / 50)
@@ -196,8 +197,8 @@ class Nearest:
         return min(bound, to_triangles(np.repeat(point[None], len(near), 0), near).min()) if len(near) else bound
 
     def farthest(self, points: np.ndarray, does_not_count: Callable[[np.ndarray], bool]) -> float:
-        """Returns the largest distance of the points that count. Points with large bounds come first, so most others
-        need not be measured."""
+        """Returns the largest distance, from the triangles, of a point that counts. Measures points with large upper
+        bounds first, so that most of the others need not be measured."""
         bounds = self.bounds(points)
         most = 0.0
         for k in np.argsort(-bounds):
@@ -210,8 +211,8 @@ class Nearest:
 
 
 def winding_numbers(triangles: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """Returns winding numbers by A. Van Oosterom and J. Strackee, 1983. Computes with arrays of x, y and z, which is
-    faster than with arrays of vectors."""
+    """Returns winding numbers by the formula of A. Van Oosterom and J. Strackee, 1983. Separate arrays of x, y and z
+    are faster than arrays of vectors."""
     corners = np.ascontiguousarray(triangles.transpose(1, 2, 0))
     result = np.empty(len(points))
     for i, p in enumerate(points):
@@ -243,7 +244,8 @@ def read_given(path: Path, folder: Path) -> Given:
 
 
 def closed_parts(triangles: np.ndarray, diagonal: float) -> list[np.ndarray]:
-    """Returns the parts, connected by edges, in which each edge belongs to an even number of triangles."""
+    """Returns the closed ones of the parts that are connected by edges: each edge belongs to an even number of
+    triangles. Points within about 1e-7 of the diagonal count as one."""
     points = np.unique(np.round(triangles.reshape(-1, 3) / (1e-7 * diagonal)
                                 ).astype(np.int64), axis=0, return_inverse=True)[1]
     corners = points.reshape(-1, 3)
@@ -258,8 +260,8 @@ def closed_parts(triangles: np.ndarray, diagonal: float) -> list[np.ndarray]:
 
 
 def place_inside(part: np.ndarray) -> np.ndarray | None:
-    """Returns the point halfway from the part's largest triangle inwards to the opposite side, or None if there is no
-    opposite side."""
+    """Starts at the centre of the part's largest triangle and returns the point halfway inwards to the opposite side,
+    or None if there is no opposite side."""
     largest = part[areas(part).argmax()]
     normal = np.cross(largest[1] - largest[0], largest[2] - largest[0])
     way = -normal / np.linalg.norm(normal) * (1 if volume(part) > 0 else -1)
@@ -277,7 +279,7 @@ def place_inside(part: np.ndarray) -> np.ndarray | None:
 
 
 def changed_bodies(given: np.ndarray, repaired: np.ndarray, diagonal: float) -> tuple[int, list[np.ndarray]]:
-    """Returns the number of closed parts, and a point in each changed part (of the first 500) that shows the change."""
+    """Returns the number of closed parts and, for each changed one of the first 500, a point that shows the change."""
     parts = closed_parts(given, diagonal)
     places = [p for p in (place_inside(part) for part in parts[:500]) if p is not None]
     if not places:
@@ -290,12 +292,12 @@ def changed_bodies(given: np.ndarray, repaired: np.ndarray, diagonal: float) -> 
 @dataclass
 class Row:
     file: str
-    of_repaired: float   # largest distance from the input, relative to the diagonal
-    of_input: float
+    of_repaired: float   # largest distance of the result from the input, relative to the diagonal
+    of_input: float      # the reverse
     told: float
     volume: float
     of_input_volume: float
-    error: float         # standard deviation of the volume above; 0: exact
+    error: float         # standard deviation of of_input_volume; 0: exact
     differs: float       # share of the input's volume
     bodies: int
     changed: list[np.ndarray]
@@ -313,11 +315,11 @@ class Row:
 
     @property
     def silent(self) -> bool:
-        """Returns whether a distance is larger than reported by more than the errors of this comparison, such as
-        those of tessellations of CAD files."""
+        """Returns whether a distance exceeds the reported one by more than the errors of this comparison, such as
+        those of the tessellation of a CAD file."""
         own = 5e-4 if self.solids is not None else 2e-6
         of_repaired = 0.0 if any(
-            "filled" in message for message in self.messages) else self.of_repaired   # not reported there
+            "filled" in message for message in self.messages) else self.of_repaired   # holes: none reported
         return max(of_repaired, self.of_input) > 1.05 * self.told + own
 
 
@@ -339,8 +341,8 @@ def repair(path: Path, folder: Path, options: argparse.Namespace) -> tuple[np.nd
 
 def input_volume(given: Given, repaired: np.ndarray, count: int,
                  random: np.random.Generator) -> tuple[float, float, float]:
-    """Returns the input's volume, the standard deviation of this estimate, and the volume in which input and result
-    differ, relative to the input's."""
+    """Returns the input's volume, the standard deviation of this estimate (0: exact), and the volume in which input
+    and result differ, relative to the input's volume."""
     corners = given.triangles.reshape(-1, 3)
     low, high = corners.min(0), corners.max(0)
     most = max(len(given.triangles), len(repaired))
@@ -369,7 +371,7 @@ def compare(path: Path, options: argparse.Namespace) -> Row:
     bodies, changed = changed_bodies(given.triangles, repaired, diagonal)
     told, regions = report["repair"], report["complex"]["regions"]
     enclosed = volume(repaired) if len(regions) == 1 else sum(
-        r["volume"] for r in regions)   # in .off interfaces have one side only
+        r["volume"] for r in regions)   # .off has interfaces of regions only once
     return Row(path.name, of_repaired / diagonal, of_given / diagonal,
                max(told["largest_distance"], told["largest_distance_of_input"]) / diagonal, abs(enclosed),
                *input_volume(given, repaired, count, random), bodies, changed, len(closed_parts(repaired, diagonal)),
@@ -377,7 +379,8 @@ def compare(path: Path, options: argparse.Namespace) -> Row:
 
 
 def print_doubts(rows: list[Row]) -> None:
-    """Prints results to look at: distances beyond the reported ones, changed bodies, volumes that differ."""
+    """Prints the results that a person should look at: distances larger than reported, changed bodies, volumes that
+    differ."""
     for row in rows:
         doubts = ["farther off than told"] if row.silent else []
         if row.changed:

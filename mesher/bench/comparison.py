@@ -1,4 +1,4 @@
-"""The command line of the scripts that compare meshers, at equal numbers of tets, on the box and on parts of a
+"""The command line of the scripts that compare meshers at equal numbers of tets, on the box and on parts of a
 corpus."""
 
 from __future__ import annotations
@@ -11,8 +11,8 @@ from inputs import Surface, box, read_surface
 
 
 def comparison_options(description: str, default_parts: list[str]) -> argparse.Namespace:
-    """Parses the options build, corpus, parts, tets, time_limit (seconds) and core. Ends the program if they
-    are wrong."""
+    """Parses the options build, corpus, parts, tets, time_limit (seconds) and core. Ends the program if the
+    command line is wrong."""
     parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     root = Path(__file__).resolve().parents[2]
     parser.add_argument("--build", type=Path, default=root / "build" / "bench")

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Meshes inputs with `--start constrained`: does each valid complex give a mesh within a limit of CPU time, and how
 many tets miss the bounds on angles? TetGen makes constrained tetrahedra (-p, without bounds on quality) of the same
-complexes. Prints Markdown tables; a log of one JSON line for each input lets an interrupted run go on."""
+complexes. Prints Markdown tables. The log has one JSON line for each input, so an interrupted run can be continued."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ read_suffixes = {".off", ".obj", ".stl", ".ply", ".poly", ".smesh", ".msh", ".st
 bounds = (8, 150)        # on dihedral angles, in degrees
 allowed_memory = 8 << 30
 on_shapes = {"thin_angles", "collar_dihedral", "radius_edge"}   # guarantees that the start may miss
-complexes = (0, 5, 6, 7)  # exit codes of a run whose input is a valid complex
+complexes = (0, 5, 6, 7)  # exit codes that show that the input was a valid complex
 
 
 def inputs_in(folders: list[Path], every: int) -> list[Path]:
-    """Returns every `every`-th input of the folders, in the order of their names."""
+    """Sorts the inputs in the folders by name, and returns every `every`-th one."""
     found = sorted(path for folder in folders for path in (folder.rglob("*") if folder.is_dir() else [folder])
                    if path.with_suffix("").suffix.lower() + path.suffix.lower() in {s + ".gz" for s in read_suffixes}
                    or path.suffix.lower() in read_suffixes)
@@ -57,7 +57,7 @@ def angles_of(path: Path) -> np.ndarray:
 
 
 def measure(program: Path, path: Path, cpu_limit: int, peer_limit: float) -> dict:
-    """Meshes one input. Returns what was measured, with TetGen's measures if the complex is valid."""
+    """Meshes one input and returns its measures, with TetGen's measures if the complex is valid."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         source = unpacked(path, folder)
@@ -126,7 +126,7 @@ def spread(values: list[float]) -> str:
 
 
 def rest(rows: list[dict]) -> str:
-    """Returns the table of the inputs without a mesh, and of those with more than 1% of tets beyond the bounds."""
+    """Returns the table of the inputs that got no mesh, or a mesh with more than 1% of its tets beyond the bounds."""
     poor = [row for row in rows if "tets" in row and row["beyond"] > 0.01 * row["tets"]]
     lines = [[row["input"], f"{row['tets']}", f"{100 * row['beyond'] / row['tets']:.2f}%", f"{row['smallest']:.2g} to "
               f"{row['largest']:.5g}", seconds(row["cpu"])] for row in poor]

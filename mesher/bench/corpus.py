@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Meshes the valid parts of a corpus that have no acute creases, at a size of 1/25 of the diagonal, and with TetGen at
-a size that gives as many tetrahedra (or as few as it can make: it keeps every triangle of the surface).
+"""Meshes the valid parts of a corpus that have no acute creases: with collarmesh at a size of 1/25 of the diagonal, and
+with TetGen at a size that gives as many tetrahedra. TetGen keeps every triangle of the surface; if it therefore cannot
+make so few tetrahedra, it makes as few as it can.
 
-Prints a Markdown table of medians of whole programs' CPU seconds; ours reads, meshes, certifies and writes. Ratios
-compare CPU seconds per tetrahedron: above 1 we are faster. The last ratio compares CPU seconds of whole runs, ours
-without the certificate."""
+Prints a Markdown table of medians of CPU seconds of the whole programs; ours reads, meshes, certifies and writes.
+Ratios are TetGen's CPU seconds per tetrahedron over ours: above 1 we are faster. The last ratio is TetGen's CPU seconds
+for whole runs over ours without the certificate."""
 
 from __future__ import annotations
 
@@ -40,7 +41,7 @@ class CorpusFile:
     def __post_init__(self) -> None:
         self.suffix = self.path.suffix.lower()
 
-    feature_angle = 30   # the default
+    feature_angle = 30   # degrees, collarmesh's default
 
     @property
     def name(self) -> str:
@@ -51,7 +52,7 @@ class CorpusFile:
         return [f"input{self.suffix}"]
 
     def write(self, path_without_suffix: Path) -> None:
-        # TetGen reads no .obj, and textual .stl only.
+        # TetGen does not read .obj, and reads .stl only if it is text.
         textual = self.path.read_bytes()[:5] == b"solid"
         if self.suffix == ".obj" or self.suffix == ".stl" and not textual:
             self.suffix = ".off"

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Measures dihedral angles in meshes of a corpus' files at levels 2 (default) and 3 of improvement: of all tets; of
-the tets that share no vertex with a thin tet or a collar's tet; and of those among the latter that have a corner
-inside, so that they do not span a thin wall.
+the tets "away", which share no vertex with a thin tet or with a tet of a collar; and of the tets away that have a
+corner in the interior and therefore do not span a thin wall.
 
-Prints a Markdown table. Angles are computed here, from the mesh files."""
+Prints a Markdown table. This script computes the angles from the mesh files."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from tables import machine, seconds, table
 
 
 def on_boundary(tets: np.ndarray, points: int) -> np.ndarray:
-    """Returns for each point whether it is a corner of a side that only one tet has."""
+    """Returns an array that says for each point whether it is a corner of a face of only one tet."""
     sides = np.sort(np.concatenate([np.delete(tets, corner, axis=1) for corner in range(4)]), axis=1)
     outer, uses = np.unique(sides, axis=0, return_counts=True)
     on = np.zeros(points, bool)
@@ -32,9 +32,9 @@ def on_boundary(tets: np.ndarray, points: int) -> np.ndarray:
 
 
 def angles(mesh_file: Path) -> list[str]:
-    """Returns columns: the numbers of tets and of thin tets; the smallest and largest angle of all tets; then the
-    number, the smallest and the largest angle of the tets that touch no thin tet and no collar; and the same of those
-    among them that have a corner inside."""
+    """Returns columns: the numbers of tets and of thin tets; the smallest and the largest angle of all tets; then the
+    number, the smallest and the largest angle of the tets that touch no thin tet and no collar; and these three values
+    again, of the ones of these tets that have a corner in the interior."""
     mesh = meshio.read(mesh_file)
     blocks = [i for i, cells in enumerate(mesh.cells) if cells.type == "tetra"]
     tets = np.concatenate([mesh.cells[i].data for i in blocks])

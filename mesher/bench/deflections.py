@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Compares how far thin parts bend under their own weight with the deflections by beam and shell theory. CalculiX
-computes deflections with elements of both orders, on our meshes (with default options) and on Gmsh's (HXT) of the
-same size. The parts are a tube and a strip clamped at one end, the roof of Scordelis and Lo, and a spring. A wall's
-bending stiffness grows with the third power of its thickness, so a mesh that is too thin bends too far. Prints a
-Markdown table."""
+"""Compares how far meshes of thin parts bend under their own weight with the deflections by beam and shell theory.
+CalculiX computes the deflections with elements of first and of second order, on our meshes (with default options) and
+on Gmsh's (HXT) with the same target edge length. The parts are a tube and a strip clamped at one end, the roof of
+Scordelis and Lo, and a spring. A wall's bending stiffness grows with the third power of its thickness, so a mesh with
+too thin a wall bends too far. Prints a Markdown table."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class Part:
     young: float            # Poisson's ratio is 0, so that a clamped end causes no disturbance
     weight: float           # weight per unit of volume, along -z
     expected: float         # expected deflection, by theory
-    held: Callable[[Nodes], list[tuple[np.ndarray, int, int]]]   # sets of nodes; first and last direction held
+    held: Callable[[Nodes], list[tuple[np.ndarray, int, int]]]   # (nodes, first, last direction in which they are held)
     looked_at: Callable[[Nodes], np.ndarray]                     # returns the nodes whose mean deflection is measured
 
 
@@ -61,14 +61,15 @@ def near(values: np.ndarray, value: float, scale: float) -> np.ndarray:
 
 
 def bent_beam(young: float, weight: float, length: float, area: float, inertia: float, shear_share: float) -> float:
-    """Returns how far the weight of a beam that is clamped at one end moves the other end, with shear (Timoshenko)."""
+    """Returns the deflection, by bending and shear (Timoshenko), of the free end of a beam that is clamped at the other
+    end, under its own weight."""
     load, shear_modulus = weight * area, young / 2
     return load * length**4 / (8 * young * inertia) + load * length**2 / (2 * shear_share * shear_modulus * area)
 
 
 def sunk_spring(young: float, weight: float, radius: float, pitch: float, turns: float, wire: float) -> float:
-    """Returns how far the weight of a helix of round wire, clamped below, moves its upper end down, by the unit load
-    theorem. `wire`: the radius of the wire."""
+    """Returns how far the upper end of a helix of round wire, clamped at its lower end, sinks under its own weight.
+    Uses the unit load theorem. `wire`: the radius of the wire."""
     steps = 20000
     angle = np.linspace(0, 2 * math.pi * turns, steps + 1)
     angle = (angle[1:] + angle[:-1]) / 2
@@ -137,7 +138,7 @@ def deflection(part: Part, mesh: meshio.Mesh, order: int, folder: Path, limit: f
     if any(len(h[0]) == 0 for h in held) or len(looked_at) == 0:
         raise ProgramFailed("no nodes where it is held or looked at")
     with open(folder / "job.inp", "w") as out:
-        out.write("*NODE, NSET=all\n")   # CalculiX reads 20 characters of a number
+        out.write("*NODE, NSET=all\n")   # CalculiX reads at most 20 characters of a number
         out.writelines("%d, %.12g, %.12g, %.12g\n" % (i + 1, *p) for i, p in enumerate(nodes))
         out.write(f"*ELEMENT, TYPE={element}, ELSET=body\n")
         out.writelines(", ".join(map(str, [i + 1, *t])) + "\n" for i, t in enumerate(tets))

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Compares collarmesh with TetGen and Gmsh HXT at the same numbers of tetrahedra, in one run.
+"""Compares collarmesh with TetGen and Gmsh HXT at the same numbers of tetrahedra.
 
-For the unit box and five parts of a corpus: each mesher's size is searched until it makes nearly the wanted
-number of tets. Then the programs run in turn, some rounds, each pinned to one core; before each run memory is
-made ready (processes.fetch_memory). Prints Markdown tables of medians. Sizes found are kept in the folder for
-temporary files.
+For the unit box and five parts of a corpus, this script first searches the size at which each mesher makes
+nearly the wanted number of tets. Then the programs run in turn for some rounds, each pinned to one core; before
+each run memory is made ready (processes.fetch_memory). Prints Markdown tables of medians. A file in the folder
+for temporary files keeps the sizes.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from processes import ProgramFailed, fetch_memory, pin_to_core
 from tables import exponent, machine, seconds, si, table, tets_text
 from tuning import SizeCache, size_for, tolerance
 
-# Closed parts without acute creases, with sharp edges or smooth, which all three meshers can mesh.
+# Closed parts, smooth or with sharp edges but without acute creases, which all three meshers can mesh.
 default_parts = ["joint.off", "spool.off", "plate_holes.STL", "handle.off", "itemb.off"]
 
 
@@ -42,7 +42,7 @@ class Cell:
 
 
 def measure(meshers, surface: Surface, target: int, options, cache: SizeCache) -> dict[str, Cell]:
-    """Measures each mesher at a number of tets: searches the sizes, then runs the programs in turn."""
+    """Measures each mesher at `target` tets: searches the sizes, then runs the programs in turn."""
     cells = {m.name: Cell() for m in meshers}
     sizes = {}
     for mesher in meshers:
@@ -99,7 +99,8 @@ main_header = ["input", "target", "mesher", "tets", "CPU s", "tets/s", "refineme
 
 
 def ratio_row(surface: Surface, target: int, cells: dict[str, Cell]) -> list[str]:
-    """Returns our refinement's speed relative to the peers', its time relative to the bare triangulation, and so on."""
+    """Returns a row for `ratio_header`: the speed of our refinement over the peers', its time over that of the bare
+    triangulation, cells per tet, and the seconds of our stages."""
     def speed(name: str) -> float | None:
         cell = cells.get(name)
         return None if cell is None or cell.failure else cell.tets / cell.median("refinement_cpu")

@@ -2,12 +2,12 @@
 """Compares how many elements meshes of CAD files have, and how near the meshes are to the exact shapes: collarmesh with
 its defaults and Gmsh (HXT), both at a twentieth of the diagonal, with elements of the first and of the second order.
 
-Distances are relative to the diagonal. They are measured from points on the mesh's outer faces (which are curved with
+Distances are relative to the diagonal. They are measured from points on the mesh's outer faces (curved if these have
 six nodes) to a dense tessellation by OpenCASCADE (FreeCAD's Shape.tessellate, with an error of 1e-4), and from the
 vertices of the tessellation to the mesh's outer faces. The tessellation has the walls between solids, but the outer
-faces of a conforming mesh do not, so points on walls count as distant. Volumes of all solids together are compared
-with OpenCASCADE's. Angles are the dihedral angles of the straight tets between the corners. --out keeps every run, and
-a run that it holds is not made again."""
+faces of a conforming mesh do not, so points on walls count as distant. The total volume of the solids is compared with
+OpenCASCADE's. Angles are the dihedral angles of the straight tets between the corners. The file --out keeps the results
+of all runs; a run that is in this file is not made again."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ points, triangles = shape.tessellate(float(sys.argv[3]) * shape.BoundBox.Diagona
 numpy.savez(sys.argv[2], volume=shape.Volume, points=[tuple(p) for p in points], triangles=triangles, \
 diagonal=shape.BoundBox.DiagonalLength)
 """
-# The corners of a tetrahedron's faces, and the mid-edge node between each two corners (VTK's order).
+# The corners of a tetrahedron's faces, and the mid-edge node between each pair of corners (VTK's order).
 faces = ((1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1))
 middles = {(0, 1): 4, (1, 2): 5, (0, 2): 6, (0, 3): 7, (1, 3): 8, (2, 3): 9}
 
@@ -61,7 +61,7 @@ class Row:
     largest: float = math.nan
     to_shape: float = math.nan  # largest distance of the mesh from the shape, relative to the diagonal
     to_mesh: float = math.nan   # the reverse
-    volume_off: float = math.nan   # relative difference of all solids' volume
+    volume_off: float = math.nan   # relative error of the total volume of the solids
 
 
 @dataclass
@@ -82,7 +82,7 @@ class Triangles:
         return float(np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6)
 
     def distance_of(self, points: np.ndarray) -> float:
-        """Returns the largest distance of points from the triangles."""
+        """Returns the largest distance of a point from the triangles."""
         measure = vtk.vtkImplicitPolyDataDistance()
         measure.SetInput(self.poly_data())
         found = vtk.vtkDoubleArray()
@@ -92,7 +92,8 @@ class Triangles:
 
 
 def lattice(n: int) -> tuple[np.ndarray, np.ndarray]:
-    """Cuts a triangle into n * n triangles. Returns the barycentric coordinates of points, and corners of triangles."""
+    """Cuts a triangle into n * n triangles. Returns the barycentric coordinates of their points, and for each of them
+    the indices of its corners."""
     index, points = {}, []
     for i in range(n + 1):
         for j in range(n + 1 - i):
@@ -104,7 +105,7 @@ def lattice(n: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def boundary(points: np.ndarray, tets: np.ndarray, n: int = 4) -> Triangles:
-    """Returns the faces that only one tetrahedron has, each cut into n * n triangles on the (curved) face."""
+    """Returns the faces of only one tetrahedron, each cut into n * n triangles with corners on the (curved) face."""
     corners = np.concatenate([tets[:, face] for face in faces])
     _, first, count = np.unique(np.sort(corners, axis=1), axis=0, return_index=True, return_counts=True)
     outer = first[count == 1]
@@ -125,15 +126,16 @@ def boundary(points: np.ndarray, tets: np.ndarray, n: int = 4) -> Triangles:
 
 
 def volume_of(points: np.ndarray, tets: np.ndarray) -> float:
-    """Returns the volume of curved elements. Extrapolates it from two divisions of the outer faces, because the error
-    of a division is proportional to the square of its triangles' size."""
+    """Returns the total volume of curved elements: extrapolated from a coarse and a fine division of the outer faces
+    into triangles, because the error of a division is proportional to the square of its triangles' size."""
     points = points - points.mean(0)
     coarse, fine = (abs(boundary(points, tets, n).volume()) for n in (2, 4))
     return (4 * fine - coarse) / 3
 
 
 def reference(path: Path, folder: Path) -> tuple[Triangles, float, float] | None:
-    """Returns the dense tessellation, the diagonal and the volume; None if OpenCASCADE fails."""
+    """Returns the dense tessellation, the diagonal and the volume; None if OpenCASCADE fails. Keeps them in the
+    folder."""
     kept = folder / (path.name + ".npz")
     if not kept.exists():
         part = kept.with_suffix(".part.npz")

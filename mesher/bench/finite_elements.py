@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Solves a Poisson problem with a known solution, by one solver (`poisson`), on meshes by collarmesh, TetGen and Gmsh
-with equal numbers of tets: errors, and condition number of the stiffness matrix. The domains are the box, parts of a
-corpus and two shapes with acute angles. Prints a Markdown table."""
+"""Solves a Poisson problem with a known solution, always by the same solver (`poisson`), on meshes by collarmesh,
+TetGen and Gmsh with equal numbers of tets. The domains are the box, parts of a corpus and two shapes with acute angles.
+Prints a Markdown table of the errors and of the condition number of the stiffness matrix."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tables import machine, si, table
 from tuning import SizeCache, size_for
 
 default_parts = ["cross.off", "joint.off", "spool.off"]
-acute = [("wedge", (20, 1)), ("fan", (8, 0))]   # families of the tests, with their parameters
+acute = [("wedge", (20, 1)), ("fan", (8, 0))]   # acute families of the tests, with their parameters
 header = ["input", "mesher", "tets", "error in L2", "of the gradient", "condition number"]
 
 
@@ -34,7 +34,7 @@ def main() -> int:
     domains = surfaces(options) + [AcuteInput(programs / "acute_shape", *shape) for shape in acute]
     for surface in domains:
         for mesher, label in zip(meshers, labels):
-            mesher.name = label   # sizes are remembered by name
+            mesher.name = label   # the cache of sizes uses this name
             folder = cache.folder / f"{surface.name}_solved_{label.replace(' ', '_')}"
             folder.mkdir(exist_ok=True)
             try:

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Meshes one CAD file or surface with Gmsh's HXT at a twentieth of its diagonal: gmsh_part.py INPUT OUT [ORDER]
 
-CAD files are opened by OpenCASCADE; a surface (.stl) is cut into patches at 40 degrees, parametrized and filled. Prints
-the volume of a CAD file's solids. Errors of Gmsh end the program with exit code 1."""
+OpenCASCADE opens CAD files. A surface (.stl) is cut into patches at angles above 40 degrees, parametrized and filled.
+Prints the volume of a CAD file's solids. Errors of Gmsh end the program with exit code 1."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def main() -> int:
     gmsh.initialize(["gmsh"])
     try:
         mesh(sys.argv[1], sys.argv[2], int(sys.argv[3]) if len(sys.argv) > 3 else 1)
-    except Exception as error:   # the module raises no type of its own
+    except Exception as error:   # Gmsh's module has no exception type of its own
         print(f"error: {error}")
         return 1
     finally:

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""Measures how time grows with the number of acute features, with the ratio of their sizes, and with short edges.
-creases: increasing numbers of wedges and fans in grids, and of teeth of a comb. spread: a large wedge with ever
-smaller wedges above it. curves: a cube with ever shorter mesh edges along its own edges, or along a segment across
-it, and nowhere else. Prints Markdown tables; with --plot FOLDER also draws the first two (matplotlib)."""
+"""Measures how time grows with the number of acute features (creases), with the ratio of their sizes (spread), and with
+the shortness of mesh edges along curves (curves). creases: increasing numbers of wedges and fans in grids, and of teeth
+of a comb. spread: a large wedge and above it a small one, ever smaller from input to input. curves: a cube with ever
+shorter mesh edges along its own edges or along a segment across it, but long ones elsewhere. Prints Markdown tables;
+with --plot FOLDER also draws the first two (matplotlib)."""
 
 from __future__ import annotations
 
@@ -40,9 +41,9 @@ class Series:
 
 
 def crease_series(program: Path, largest: int) -> list[Series]:
-    """Returns series with increasing numbers of crease segments. A wedge of 40 degrees has one, a fan of 4 sheets (the
-    sides of two such wedges, 40 degrees between them) has one, a fan of 8 sheets has one; these are in grids of turned
-    copies. A comb has one at the tip of each tooth; two facets of it contain the sides of all its teeth."""
+    """Returns series with increasing numbers of crease segments. Wedges of 40 degrees, fans of 4 sheets (the sides of
+    two such wedges, 40 degrees apart) and fans of 8 sheets have one crease segment each; grids of rotated copies have
+    many. A comb has one at the tip of each tooth; the two facets at its ends extend over all its teeth."""
     counts = [n for k in range(1, 6) for n in (10 ** k, 3 * 10 ** k) if n <= min(largest, 100000)]
     copies = [Series(title, {n: AcuteInput(program, family, parameters, n) for n in counts if n <= most}, {})
               for title, family, parameters, most in (("wedges of 40 degrees", "wedge", (40, 1), 100000),
@@ -63,7 +64,7 @@ def spread_series(program: Path) -> list[Series]:
 
 @dataclass
 class Cube:
-    """The unit cube; with a segment across it, oblique to its sides, on request."""
+    """The unit cube. If `segment` is true, it contains a segment that is oblique to its sides."""
     title: str
     segment: bool
     suffix = ".poly"
@@ -85,8 +86,8 @@ class Cube:
 
 
 def curve_table(program: Path, time_limit: float, folder: Path) -> str:
-    """Measures time and memory of cubes with fine curves, and of a cube meshed with one size everywhere. Returns a
-    table, with the memory per tet and per cell of the triangulation (which also has cells outside the regions)."""
+    """Measures time and memory for cubes with fine curves, and for a cube meshed with one size everywhere. Returns a
+    table. It has the memory per tet and the memory per cell of the triangulation (also outside the regions)."""
     rows = []
     folder.mkdir(parents=True, exist_ok=True)
     fine = [2.0 ** -k for k in range(6, 13)]
@@ -151,7 +152,7 @@ def main() -> int:
     options = parser.parse_args()
     about = machine(options.build)
     pin_to_core(options.core)
-    # The largest numbers of creases take more than half of the machine's memory, which is the default limit.
+    # The default limit is half of the machine's memory. The largest numbers of creases take more.
     mesher = Collarmesh(options.build / "bin" / "collarmesh", options.time_limit, ["--max-memory", "0"])
     program = options.build / "bin" / "acute_shape"
     folder = SizeCache().folder / "acute"

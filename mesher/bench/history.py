@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""Measures how fast this version is: appends lines to history.tsv beside this file, and draws history.svg of all lines.
+"""Measures how fast this version is, appends the results to history.tsv beside this file, and draws all lines of this
+file as images/history.svg.
 
-Whole runs on a box by one thread alternate with CGAL's triangulation of our mesh's vertices (`triangulate_points`,
-where the build has it) and with Gmsh HXT with its optimization (where python3-gmsh is installed). The lines have
+Whole runs of collarmesh on a box, with one thread, alternate with CGAL's triangulation of our mesh's vertices (if the
+build has `triangulate_points`) and with Gmsh HXT and its optimization (if python3-gmsh is installed). The lines have
 medians of CPU seconds and of ratios of speeds. Compare ratios: they hardly depend on the machine."""
 
 from __future__ import annotations
@@ -47,7 +48,7 @@ def processor() -> str:
 
 
 def commit(root: Path) -> str:
-    """Returns the commit, with a "+" if files differ from it."""
+    """Returns the commit of this checkout, with a "+" if files differ from the commit."""
     told = subprocess.run(["git", "describe", "--always", "--dirty=+"], cwd=root, capture_output=True, text=True)
     return told.stdout.strip() or "unknown"
 

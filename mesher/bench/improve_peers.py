@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Compares dihedral angles after improvement with TetGen -O, Gmsh with its own and with Netgen's optimizer,
-and CGAL's Mesh_3 with perturbation and exudation, on the same surfaces at the same number of tetrahedra.
-Prints a Markdown table: smallest and largest dihedral angle, the first percentile and the mean of the tets'
-smallest angles, the share of tets below 20 degrees, CPU seconds of the whole program. Angles are computed
-here, from the mesh files."""
+"""Compares the dihedral angles of our improved meshes with those by TetGen -O, by Gmsh with its own and with
+Netgen's optimizer, and by CGAL's Mesh_3 with perturbation and exudation, on the same surfaces at the same
+number of tetrahedra. Prints a Markdown table: smallest and largest dihedral angle, the first percentile and the
+mean of the tets' smallest angles, the share of tets with an angle below 20 degrees, CPU seconds of the whole
+program. This script computes the angles from the mesh files."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ header = ["input", "mesher", "tets", "smallest", "1st percentile", "mean", "larg
 
 
 def dihedral_angles(points: np.ndarray, tets: np.ndarray) -> np.ndarray:
-    """Returns dihedral angles in degrees, a row of six per tet."""
+    """Returns the dihedral angles in degrees: for each tet a row of six."""
     corners = points[tets]
     normals = []   # outward unit normal of the face opposite each corner
     for opposite in range(4):
@@ -54,7 +54,7 @@ def rows(surface: Surface, meshers, target: int, cache: SizeCache) -> list[list[
         folder.mkdir(exist_ok=True)
         try:
             mesher.prepare(surface, folder)
-            mesher.name = label   # sizes are remembered by name
+            mesher.name = label   # the cache of sizes uses this name
             run = mesher.mesh(surface, size_for(mesher, surface, target, folder, cache), folder)
         except ProgramFailed as failure:
             found.append([surface.name, label, str(failure).splitlines()[0], *[""] * 6])

@@ -1,4 +1,4 @@
-"""Inputs of the benchmarks: surfaces from files, and generated ones; written for each mesher."""
+"""Inputs of the benchmarks: surfaces that are read from files or generated, and written in each mesher's format."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ class Surface:
     name: str
     points: list[Corner]
     polygons: list[list[int]] = field(default_factory=list)
-    feature_angle = 30   # the default
+    feature_angle = 30   # degrees, collarmesh's default
 
     @property
     def files(self) -> list[str]:
-        """Returns the file that write("input") makes."""
+        """Returns the name of the file that write("input") makes."""
         return [f"input{self.suffix}"]
 
     @property
@@ -35,7 +35,7 @@ class Surface:
 
     @property
     def volume(self) -> float:
-        """Returns the volume of the solid, if the surface is closed and oriented outwards."""
+        """Returns the volume inside the surface. Precondition: it is closed and all polygons are oriented alike."""
         total = 0.0
         for a, b, c in self.triangles():
             (ax, ay, az), (bx, by, bz), (cx, cy, cz) = self.points[a], self.points[b], self.points[c]
@@ -44,7 +44,7 @@ class Surface:
 
     @property
     def suffix(self) -> str:
-        """Returns the extension of a format that can hold it."""
+        """Returns the extension of the format to write: .poly if there are loose points, otherwise .off."""
         return ".off" if len({v for q in self.polygons for v in q}) == len(self.points) else ".poly"
 
     def write(self, path_without_suffix: Path) -> None:
@@ -87,8 +87,8 @@ class Surface:
 
 
 def classified(stl: str) -> str:
-    """Returns the text of a Gmsh model: the solid in a triangulated surface, with patches that end at angles above 30
-    degrees."""
+    """Returns the text of a Gmsh model of the solid inside a triangulated surface. Patches end where neighbouring
+    triangles are at more than 30 degrees to each other."""
     return (f'Merge "{stl}";\nClassifySurfaces{{30*Pi/180, 1, 1, Pi}};\nCreateGeometry;\n'
             "Surface Loop(1) = Surface{:};\nVolume(1) = {1};\n")
 
@@ -145,7 +145,8 @@ def box() -> Surface:
 
 def skew_lines(points_per_line: int) -> Surface:
     """Returns the unit cube with loose points, evenly spaced, on two skew lines inside it. Every point of
-    one line is a Delaunay neighbour of every point of the other: n^2 tetrahedra before refinement."""
+    one line is a Delaunay neighbour of every point of the other line, so with n points per line there are
+    about n^2 tetrahedra before refinement."""
     surface = box()
     surface.name = f"skew_lines_{points_per_line}"
     for k in range(points_per_line):
@@ -158,7 +159,8 @@ def skew_lines(points_per_line: int) -> Surface:
 
 
 def sphere(frequency: int) -> Surface:
-    """Returns the unit sphere as 20 frequency^2 triangles: an icosahedron's faces cut evenly, pushed out."""
+    """Returns the unit sphere as 20 frequency^2 triangles: cuts an icosahedron's faces evenly, and pushes the corners
+    outwards onto the sphere."""
     g = (1 + math.sqrt(5)) / 2
     corners = [(s * 1.0, t * g, 0.0) for s in (-1, 1) for t in (-1, 1)]
     corners = [c[a:] + c[:a] for a in range(3) for c in corners]

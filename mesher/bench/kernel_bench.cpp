@@ -1,4 +1,4 @@
-// Compares the Delaunay kernel with CGAL's, with the same points in the same order.
+// Compares our Delaunay kernel with CGAL's: both get the same points in the same order.
 #include <CGAL/Delaunay_triangulation_3.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <benchmark/benchmark.h>
@@ -18,7 +18,7 @@ using CellHandle = CgalTriangulation::Cell_handle;
 
 Kernel::Point_3 to_cgal(const Point& p) { return {p.x, p.y, p.z}; }
 
-/// Returns a box far around the unit cube, as the refinement's box is around its input.
+/// Returns a box much larger than the unit cube. Refinement puts such a box around its input.
 Box surrounding_box() {
   Box box;
   box.add(Point{-0.87, -0.89, -0.91});
@@ -26,8 +26,8 @@ Box surrounding_box() {
   return box;
 }
 
-/// Returns a cell in conflict with p, by walking from `cell` towards p. Rounded volumes decide the way:
-/// errors cause detours only.
+/// Walks from `cell` towards p and returns the first cell on the way that is in conflict with p. The signs of
+/// rounded volumes choose the way; a wrong sign costs no more than a detour.
 Index conflicting_cell(const Triangulation& mesh, Index cell, const Point& p) {
   FaceId entered = no_face;
   while (!mesh.in_conflict(cell, p)) {
@@ -95,8 +95,8 @@ void insertion_cgal(benchmark::State& state) {
   count_rates(state, points.size(), cells);
 }
 
-/// Returns points whose conflict zones are searched. Like the inserted points they are in the order of a
-/// space-filling curve, so that caches behave as in refinement.
+/// Returns the points whose conflict zones the benchmark searches. Like the inserted points, they are in the
+/// order of a space-filling curve, so that caches behave as in refinement.
 std::vector<Point> queries() { return spatially_sorted(random_points(20'000, 17)); }
 
 void conflict_zone(benchmark::State& state) {

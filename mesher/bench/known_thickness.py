@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Measures the thickness of rods, tubes, shells and roofs in their meshes, at default options, for the bodies
-that known_volumes.py writes as STEP files. Rays go inwards along the normals at random points, evenly distributed, of
-the exact outer surface. The thickness is the distance between the first two places where a ray crosses the mesh's
-surface, with curved faces cut into 16 triangles."""
+"""Measures how thick rods, tubes, shells and roofs are in meshes that default options make of the STEP files by
+known_volumes.py. Rays start outside and go inwards along the normals of the exact outer surface, at random points that
+are evenly distributed over it. The thickness is the distance between the first two places where a ray crosses the
+mesh's surface, each face of which is cut into 16 triangles."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ Rays = tuple[np.ndarray, np.ndarray]   # starting points outside the body, and u
 
 
 def around_axis(radius: float, low: float, high: float, length: float, rng: np.random.Generator, count: int) -> Rays:
-    """Returns rays towards the axis of a cylinder along x, between the angles `low` and `high`, in degrees from the y
-    axis."""
+    """Returns rays towards the axis of a cylinder along x. They start at angles between `low` and `high`, in degrees
+    from the y axis."""
     angle = np.radians(rng.uniform(low, high, count))
     outwards = np.stack([np.zeros(count), np.cos(angle), np.sin(angle)], 1)
     start = 1.5 * radius * outwards
@@ -41,7 +41,7 @@ def around_centre(radius: float, rng: np.random.Generator, count: int) -> Rays:
 
 
 def member(name: str) -> tuple[float, Callable[[np.random.Generator, int], Rays]] | None:
-    """Returns the thickness of a member of a family and the function that makes its rays; None for other families."""
+    """Returns a body's exact thickness and the function that makes its rays; None if its family is not measured."""
     family, _, number = name.rpartition("_")
     if family in ("rod", "tube"):
         r = float(number)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Meshes families of bodies with known volumes at default options: how far each region's volume is off, and with how
-many elements. Most lengths are in target edge lengths, a twentieth of the diagonal, so the radius 0.02 of a rod is a
-fiftieth of the target edge length.
+"""Meshes families of bodies with known volumes at default options, and measures how far the volumes of regions are off
+and how many elements the meshes have. Most lengths are in target edge lengths (a twentieth of the diagonal), so a rod
+of radius 0.02 has a radius of a fiftieth of the target edge length.
 
 known_volumes.py write FOLDER makes the inputs: surfaces with 24 edges per circle (coarse) and with 96 (fine),
 complexes of several regions, and STEP files (these need FreeCAD). known_volumes.py run FOLDER meshes them and prints a
@@ -26,7 +26,7 @@ from processes import run_limited
 from tables import table
 
 diagonal = 20.0             # so that the target edge length is 1
-side = diagonal / math.sqrt(3)   # of a cube with that diagonal
+side = diagonal / math.sqrt(3)   # of a cube with this diagonal
 memory_limit = 12 << 30     # bytes
 cuts = {"coarse": 24, "fine": 96}   # edges per circle
 
@@ -57,20 +57,21 @@ for line in sys.stdin:
 
 @dataclass
 class Family:
-    """A folder of bodies. Beside each file is another one with the volumes of its regions."""
+    """A folder of bodies. Beside the file of each body is a .json file with the volumes of its regions."""
     folder: Path
     step: list[str] = field(default_factory=list)
     given: dict[str, list[float]] = field(default_factory=dict)
 
     def solids(self, name: str, expression: str, volumes: list[float] | None = None) -> None:
-        """Adds a STEP file. Its volumes are OpenCASCADE's unless given: OpenCASCADE integrates waves badly."""
+        """Adds a STEP file. OpenCASCADE computes its volumes unless `volumes` gives them, as for waves, which
+        OpenCASCADE integrates badly."""
         self.step.append(f"{self.folder / name}.step {expression}")
         if volumes:
             self.given[f"{name}.step"] = volumes
 
     def shells(self, name: str, shells: list[Surface]) -> None:
-        """Adds closed surfaces, each inside the one before it: a region lies between each and the next, and
-        one inside the last."""
+        """Adds closed surfaces, each inside the previous one. A region lies between each surface and the next,
+        and one inside the last surface."""
         volumes = [s.volume for s in shells] + [0.0]
         self.surfaces(name, shells, [a - b for a, b in zip(volumes, volumes[1:])])
 
@@ -93,8 +94,8 @@ class Family:
 
 
 def turned(profile: list[tuple[float, float]], around: int, closed: bool = False) -> Surface:
-    """Turns a profile of (x, radius) about the x axis. A profile that is not closed begins and ends on the
-    axis."""
+    """Returns the surface of revolution of a profile of (x, radius) about the x axis. Precondition: a profile
+    that is not closed begins and ends on the axis."""
     points, rows, polygons = [], [], []
     for x, radius in profile:
         rows.append([len(points) + k if radius else len(points) for k in range(around)])
@@ -148,7 +149,7 @@ def torus(radius: float, wire: float, around: int, along: int) -> Surface:
 
 
 def prism(outline: list[tuple[float, float]], low: float, high: float) -> Surface:
-    """Returns the prism over a polygon that is star-shaped as seen from the origin or convex."""
+    """Returns the prism over a polygon. Precondition: it is convex, or star-shaped as seen from the origin."""
     n = len(outline)
     points = [(x, y, z) for z in (low, high) for x, y in outline]
     polygons = [[k, (k + 1) % n, n + (k + 1) % n, n + k] for k in range(n)]
@@ -251,7 +252,7 @@ def write(folder: Path) -> None:
             family.shells(f"tube_{r}_{cut}", [tube(r, 0.9 * r, diagonal, around)])
         for t in (0.002, 0.01, 0.05, 0.2, 0.5):
             shell = [ball(ball_radius, around), ball(ball_radius - t, around)]
-            # The inner surface bounds a hollow, so its orientation is reversed.
+            # Reverse the inner surface, because it bounds a void.
             shell[1].polygons = [q[::-1] for q in shell[1].polygons]
             family.surfaces(f"hollow_ball_{t}_{cut}", shell, [shell[0].volume - shell[1].volume])
         for r in (0.01, 0.03, 0.1, 0.3):
@@ -280,11 +281,12 @@ class Row:
     outcome: str
     cpu: float = math.nan     # seconds
     tets: int = 0
-    off: float = math.nan     # the largest relative difference of a region's volume
+    off: float = math.nan     # the largest relative error of a region's volume
 
 
 def differences(made: list[float], known: list[float]) -> float:
-    """Returns the largest relative difference of a region's volume; 1 if the number of regions is wrong."""
+    """Returns the largest relative error of a region's volume; 1 if the number of regions is wrong. Compares the sorted
+    volumes."""
     if len(made) != len(known):
         return 1.0
     return max(abs(a / b - 1) for a, b in zip(sorted(made), sorted(known)))

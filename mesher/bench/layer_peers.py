@@ -1,15 +1,16 @@
 #!/usr/bin/python3
-"""Compares our boundary layers with Netgen's and Gmsh's: what they cover, whether cells are valid, what they cost.
+"""Compares our boundary layers with Netgen's and Gmsh's: how much of the surface they cover, how many cells are
+invalid, and how much time they take.
 
     layer_peers.py PROGRAM [--parts FILE...] [--only WORDS] [--size-share 20] [--limit 300]
 
 The peers get the surface of our mesh without layers, with a size of 1/20 of the diagonal. Netgen fills it with tets
 and pushes layers into them; Gmsh divides it into patches at edges above 40 degrees, meshes these at the same size,
-extrudes them and fills the rest. All are asked for three layers on all faces, the first a tenth of the size, growth
-1.2. All files are measured in the same way: `covered` is the area of the boundary's triangles that belong to prisms,
-relative to that surface, `folded` counts cells with a Jacobian that is not positive, `volume` compares the sum over
-cells with the volume in that surface. Needs Debian's python3-netgen, python3-gmsh and python3-meshio; shapes that are
-STEP files need FreeCAD."""
+extrudes them and fills the rest. All three programs are asked for three layers on all faces: the first a tenth of the
+size, growth 1.2. All meshes are measured in the same way. `covered` is the area of the boundary's triangles that belong
+to prisms, relative to the area of the peers' input; `folded` counts cells with a Jacobian that is not positive;
+`volume` compares the total volume of the cells with the volume inside the peers' input. Needs Debian's python3-netgen,
+python3-gmsh and python3-meshio; shapes that are STEP files need FreeCAD."""
 
 from __future__ import annotations
 
@@ -37,7 +38,7 @@ shown = ("cube", "rod", "bracket", "pipe", "T-junction", "sphere with a fin")
 
 
 def surface_of(mesh: meshio.Mesh) -> tuple[np.ndarray, np.ndarray]:
-    """Returns the triangles of a file and their tags."""
+    """Returns the triangles of a mesh and their tags."""
     chosen = [(block.data, tags) for block, tags in zip(mesh.cells, mesh.cell_data["gmsh:physical"])
               if block.type == "triangle"]
     return np.concatenate([cells for cells, _ in chosen]), np.concatenate([tags for _, tags in chosen])
@@ -62,13 +63,13 @@ def by_netgen(surface: str, out: str, size: float) -> None:
         for i in range(3):
             a, b = corners[i], corners[(i + 1) % 3]
             edges[min(a, b), max(a, b)].append((tag, a, b))
-    for sides in edges.values():  # an edge between two faces is a segment of each
+    for sides in edges.values():  # an edge between two faces gets a segment for each of them
         if len(sides) == 2 and sides[0][0] != sides[1][0]:
             for (tag, a, b), (other, _, _) in (sides, sides[::-1]):
                 mesh.Add(meshing.Element1D([number[a], number[b]], [faces[tag], faces[other]], faces[tag]))
     mesh.GenerateVolumeMesh(meshing.MeshingParameters(maxh=size))
-    # Innermost first: each call puts a layer at the walls, into the layer of the call before. In a single call with
-    # all heights, cells overlap.
+    # Begin with the thickness of all layers together. Each further call inserts a thinner layer at the walls, into
+    # the layer that the previous call made. In a single call with all heights, cells would overlap.
     for volume, top in enumerate(reversed(np.cumsum(heights(0.1 * size))), 1):
         mesh.BoundaryLayer(1, [float(top)], volume, [f"layer{volume}"])
     cells = collections.defaultdict(list)
@@ -97,7 +98,7 @@ def by_gmsh(surface: str, out: str, size: float) -> None:
     gmsh.model.geo.addVolume([loop])
     gmsh.model.geo.synchronize()
     gmsh.model.mesh.generate(3)
-    # Take the cells of all volumes. They are of first order, so that their nodes are their corners.
+    # Take the cells of all volumes. They are of first order, so their nodes are their corners.
     nodes, coordinates, _ = gmsh.model.mesh.getNodes()
     row = np.zeros(int(nodes.max()) + 1, int)
     row[nodes] = np.arange(len(nodes))
@@ -116,19 +117,19 @@ class Row:
     prisms: int = 0
     pyramids: int = 0
     covered: float = math.nan  # percent
-    folded: int = -1
-    volume: float = math.nan   # percent off
+    folded: int = -1           # -1: not measured
+    volume: float = math.nan   # error in percent
     seconds: float = math.nan  # CPU seconds for the mesh and the layers
 
 
 def signed(jacobians: np.ndarray) -> np.ndarray:
-    """Returns the Jacobians of one kind of cell, with the opposite sign if most are negative: programs differ in the
-    order of corners."""
+    """Returns the Jacobians of one kind of cell, with the opposite sign if most of them are negative. This is
+    necessary because programs order corners differently."""
     return jacobians * (np.sign(np.median(jacobians)) or 1) if jacobians.size else jacobians
 
 
 def sides_of(cells: dict[str, np.ndarray]) -> dict[frozenset, tuple[str, np.ndarray]]:
-    """Returns the triangles that only one cell has, with the kind of that cell."""
+    """Returns the triangular faces of only one cell, each with the kind of its cell."""
     places = {"tetra": ((0, 1, 2), (0, 1, 3), (0, 2, 3), (1, 2, 3)), "wedge": ((0, 1, 2), (3, 4, 5)),
               "pyramid": ((0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4))}
     found: dict[frozenset, tuple[str, np.ndarray]] = {}
@@ -161,8 +162,8 @@ def judge(row: Row, path: Path, area: float, volume: float) -> None:
 
 
 def volume_of_prisms(p: np.ndarray) -> float:
-    """Returns the sum of the volumes, by integration at two points of the height times three of the triangle, which is
-    exact for prisms."""
+    """Returns the sum of the volumes. Integrates with 2 points along the height times 3 points in the triangle, which
+    is exact for prisms."""
     found = 0.0
     for z in (0.5 - math.sqrt(1 / 12), 0.5 + math.sqrt(1 / 12)):
         for x, y in ((1 / 6, 1 / 6), (2 / 3, 1 / 6), (1 / 6, 2 / 3)):
@@ -174,7 +175,7 @@ def volume_of_prisms(p: np.ndarray) -> float:
 
 
 def volume_of_pyramids(p: np.ndarray) -> float:
-    """Returns the sum of the volumes: the mean over both ways to divide the bases into triangles."""
+    """Returns the sum of the volumes: the mean over the two ways to divide each base into triangles."""
     halves = [np.abs(triple(p[:, j] - p[:, i], p[:, k] - p[:, i], p[:, 4] - p[:, i])).sum()
               for i, j, k in ((0, 1, 2), (0, 2, 3), (0, 1, 3), (1, 2, 3))]
     return sum(halves) / 12
@@ -186,8 +187,8 @@ def area_and_volume(points: np.ndarray, triangles: np.ndarray) -> tuple[float, f
 
 
 def timed(command: list[str], limit: float, folder: Path) -> tuple[float, str]:
-    """Runs a command in a folder, where Netgen leaves a log. Returns its CPU seconds and, if it failed, its last
-    line of errors."""
+    """Runs a command in a folder, in which Netgen leaves a log. Returns the command's CPU seconds and, if it failed,
+    the last line of its error output (otherwise an empty text)."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     try:
         made = subprocess.run(command, capture_output=True, text=True, timeout=limit, cwd=folder)

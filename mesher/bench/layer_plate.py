@@ -1,12 +1,13 @@
 #!/usr/bin/python3
-"""Compares the flow along a flat plate in OpenFOAM, with and without boundary layers of cells, with Blasius' profile.
+"""Computes the flow along a flat plate in OpenFOAM, on meshes with and without layers of cells, and compares its
+velocity profile with Blasius' solution.
 
     layer_plate.py PROGRAM MODELS [--viscosity 0.001]
 
 Air enters a box of 3 x 2 x 1 with speed 1; the floor is the plate, the end is open, ceiling and sides slip. Where x
-is from 1.5 to 2.5, speeds are divided by the speed outside of the boundary layer at the same x and compared with
-Blasius' solution. The division is necessary because the layer displaces air, so that the flow outside gets some
-percent faster along the plate, which Blasius' solution does not contain."""
+is from 1.5 to 2.5, speeds are divided by the speed outside of the boundary layer at the same x, and the quotients are
+compared with Blasius' solution. The division is necessary because Blasius' solution assumes a constant speed outside,
+but the layer displaces air, so the flow outside gets some percent faster along the plate."""
 
 import argparse
 import json

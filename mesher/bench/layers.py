@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""Measures boundary layers on shapes and on real parts: what they cover, whether cells are valid, what they cost.
+"""Measures boundary layers on shapes and on real parts: how much of the surface they cover, how many cells are
+invalid, and how much time they take.
 
     layers.py PROGRAM [--parts FOLDER_OR_FILE...] [--size-share 20] [--count 3] [--openfoam] [--options ...]
 
-Every shape gets layers on all faces: --count of them, the first a tenth of the size. This script reads the mesh file
-and measures, without the mesher's code, Jacobians at corners and integration points, first heights and dihedral
+Every shape gets --count layers on all faces; the first layer is a tenth of the size thick. This script reads the mesh
+file and measures, without the mesher's code, Jacobians at corners and integration points, first heights and dihedral
 angles. With `--openfoam` checkMesh judges each mesh, too. T-junction, airfoil and fin are STEP files that FreeCAD
-makes; without it they are left out."""
+makes; without FreeCAD they are left out."""
 
 from __future__ import annotations
 
@@ -42,14 +43,14 @@ class Row:
     prisms: int = 0
     pyramids: int = 0
     coverage: float = math.nan       # percent of the walls' area
-    full: float = math.nan           # percent of this area with nine tenths of the thickness or more
-    negative: int = -1               # cells with a Jacobian that is not positive
-    first_error: float = math.nan    # percent of the first height, where it is not reduced; 95th percentile
-    step: float = math.nan
+    full: float = math.nan           # percent of the walls' area with at least 0.9 of the requested thickness
+    negative: int = -1               # cells with a Jacobian that is not positive; -1: not measured
+    first_error: float = math.nan    # 95th percentile of the unreduced first heights' errors, percent
+    step: float = math.nan           # largest ratio of the total heights at two neighbouring nodes
     smallest: float = math.nan       # dihedral angle of the tets outside the layers, degrees
     largest: float = math.nan
     seconds: float = math.nan        # CPU seconds of all threads
-    share: float = math.nan          # percent of the elapsed time that layers take
+    share: float = math.nan          # time for layers, in percent of the elapsed time
     why: str = ""
     openfoam: str = ""               # the verdict of checkMesh
     non_orthogonality: str = ""      # largest and mean, degrees
@@ -61,8 +62,8 @@ def triple(a, b, c):
 
 
 def prism_jacobians(p: np.ndarray) -> np.ndarray:
-    """Returns Jacobians at 7 points of the triangle (corners, integration points) times 5 of the height (ends,
-    integration points), by shape functions; p: cells x 6 x 3."""
+    """Returns Jacobians, by shape functions, at 7 points of the triangle (corners and integration points) times 5
+    points along the height (ends and integration points). Shapes: p (n, 6, 3), result (35, n)."""
     third, sixth = 1 / 3, 1 / 6
     across = [(0, 0), (1, 0), (0, 1), (third, third), (sixth, sixth), (4 * sixth, sixth), (sixth, 4 * sixth)]
     found = []
@@ -76,8 +77,8 @@ def prism_jacobians(p: np.ndarray) -> np.ndarray:
 
 
 def pyramid_jacobians(p: np.ndarray) -> np.ndarray:
-    """Returns Jacobians, up to a positive factor, on the lines from the apex to 5 x 5 points of the base, corners
-    included; p: cells x 5 x 3."""
+    """Returns Jacobians, up to a positive factor, on the lines from the apex to 5 x 5 points of the base (corners
+    included). Shapes: p (n, 5, 3), result (25, n)."""
     found = []
     for x in (0.0, 0.2113, 0.5, 0.7887, 1.0):
         for y in (0.0, 0.2113, 0.5, 0.7887, 1.0):
@@ -123,22 +124,22 @@ def measure(row: Row, path: Path, first: float) -> None:
 
 
 def measure_first_heights(row: Row, prisms: np.ndarray, layers: np.ndarray, first: float) -> None:
-    """Measures the 95th percentile of the relative errors of the first heights of prisms in which no node has less than
-    nine tenths of the requested height. A prism's height is the mean over its nodes, because heights above a triangle
-    deviate to both sides from the height above a curved wall."""
+    """Measures the 95th percentile of the relative errors of first heights. Leaves out prisms in which the height at a
+    node is below nine tenths of the requested one. A prism's height is the mean over its nodes: on a curved wall,
+    heights above the plane of the triangle are too large at some nodes and too small at others."""
     p = prisms[layers == 1]
     if not len(p):
         return
     normal = np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0])
     normal /= np.linalg.norm(normal, axis=1)[:, None]
     heights = np.abs(np.stack([np.einsum("ij,ij->i", p[:, k + 3] - p[:, k], normal) for k in range(3)]))
-    kept = heights.min(axis=0) > 0.9 * first   # elsewhere the height was reduced
+    kept = heights.min(axis=0) > 0.9 * first   # the mesher reduced the others
     if kept.any():
         row.first_error = 100 * float(np.quantile(np.abs(heights[:, kept].mean(axis=0) / first - 1), 0.95))
 
 
 def cpu_seconds() -> float:
-    """Returns the CPU seconds of all programs that this one ran and that have ended."""
+    """Returns the CPU seconds of all ended child processes of this script."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
 
@@ -223,7 +224,7 @@ def bend(around: int, along: int) -> Surface:
 
 
 def airfoil() -> str:
-    """Returns the points of NACA 0012, as an expression of FreeCAD's Python: a chord of 1, the trailing edge sharp."""
+    """Returns the points of NACA 0012 with a chord of 1 and a sharp trailing edge, as an expression for FreeCAD."""
     def thickness(x: float) -> float:
         return 0.6 * (0.2969 * math.sqrt(x) - 0.126 * x - 0.3516 * x**2 + 0.2843 * x**3 - 0.1036 * x**4)
     along = [(1 - math.cos(math.pi * k / 40)) / 2 for k in range(41)]
@@ -232,8 +233,8 @@ def airfoil() -> str:
     return "[" + ", ".join(f"V({x + 1!r}, {y + 1!r}, 0)" for x, y in points) + "]"
 
 
-# Solids, as expressions of FreeCAD's Python: a pipe that branches, the room around an airfoil between two walls, a fin
-# that leaves a sphere.
+# Solids, as expressions for FreeCAD's Python: a pipe that branches, the space around an airfoil in a box, a sphere with
+# a fin.
 solids = {
     "T-junction": "[Part.makeCylinder(1, 8, V(-4, 0, 0), V(1, 0, 0))"
                   ".fuse(Part.makeCylinder(0.7, 4, V(0, 0, 0), V(0, 0, 1))).removeSplitter()]",

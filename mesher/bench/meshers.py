@@ -1,6 +1,6 @@
 """collarmesh and its peers behind one interface: a surface and a size as input, measures as result.
-For all meshers the size is a target edge length. A mesher that takes a largest volume instead gets that of the
-regular tetrahedron with this edge.
+For all meshers the size is a target edge length. A mesher that bounds volumes, not edge lengths, gets the volume
+of the regular tetrahedron with this edge length.
 """
 
 from __future__ import annotations
@@ -23,19 +23,19 @@ from processes import Measured, ProgramFailed, run
 class MeshRun:
     tets: int
     cpu: float                 # seconds of the whole program
-    refinement_cpu: float      # seconds of what the mesher calls refinement
+    refinement_cpu: float      # seconds of the stage that the mesher calls refinement
     peak_bytes: int            # peak memory of the whole program
     structure_bytes: int = 0   # memory of the data structures, as the mesher reports it; 0: unknown
     stages: dict | None = None
     guarantee_missed: bool = False
-    cells: int = 0             # number in the whole triangulation, including the outside; 0: unknown
+    cells: int = 0             # cells of the whole triangulation, also outside the regions; 0: unknown
     wall: float = 0            # seconds of the whole program
-    volume_wall: float = 0     # seconds from a surface mesh or complex to improved tets; 0: unknown
+    volume_wall: float = 0     # seconds from a surface mesh (peers) or complex (ours) to improved tets; 0: unknown
     report: dict | None = None   # collarmesh's own measurements
 
     @property
     def meshing_cpu(self) -> float:
-        """Returns the CPU seconds of the whole program without the check of its result, which peers do not make."""
+        """Returns the CPU seconds of the whole program without the certificate, which peers do not make."""
         return self.cpu - (self.stages or {}).get("check", 0)
 
 
@@ -61,7 +61,7 @@ class Collarmesh:
         return printed.stdout.strip().replace("collarmesh ", "")
 
     def signature(self) -> str:
-        """Returns a text that changes with the program and its arguments, which may change the meshes."""
+        """Returns a text that changes whenever the program or its arguments, and so perhaps its meshes, change."""
         state = self.program.stat()
         return f"{state.st_size}-{state.st_mtime_ns} {' '.join(self.arguments)}"
 
@@ -74,7 +74,7 @@ class Collarmesh:
                    "--progress", "none", "-q", *self.arguments]
         measured = run(command, folder, self.time_limit, accepted=(0, self.guarantee_missed))
         report = json.loads((folder / "report.json").read_text())
-        # The report has wall seconds; multiply by the program's CPU seconds per wall second.
+        # The report has wall seconds. Convert them by the CPU seconds per wall second of the whole program.
         share = min(1.0, measured.cpu / measured.wall)
         stages = {stage: seconds * share for stage, seconds in report["seconds"].items()}
         return MeshRun(report["mesh"]["tets"], measured.cpu, stages["refine"], measured.peak_bytes,
@@ -145,14 +145,14 @@ class Gmsh:
 
     @staticmethod
     def _count(output: str) -> str:
-        """Returns the pattern that finds the number of tets. Only HXT prints it; for other algorithms, finds the number
-        of elements of all dimensions."""
+        """Returns the pattern that finds the number of tets. Only HXT prints this number; for other algorithms the
+        pattern finds the number of elements of all dimensions."""
         hxt = r"Final tet. mesh contains (\d+) tetrahedra"
         return hxt if re.search(hxt, output) else r"\d+ nodes (\d+) elements"
 
 
 class CgalMesh3:
-    """CGAL's Mesh_3, by the program cgal_mesh, with perturbation and exudation."""
+    """CGAL's Mesh_3 with perturbation and exudation, run by the program cgal_mesh."""
     name = "CGAL Mesh_3"
     mesh_file = "mesh.mesh"
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Measures quality and edge lengths of meshes like MMG's histograms, for comparison with published ones: the quality
-72 sqrt(3) V / (sum of squared edge lengths)^(3/2) of a tetrahedron, which is 1 for a regular one, and edge lengths
+"""Measures meshes in the same way as MMG's histograms, for comparison with published histograms: the quality of
+tetrahedra, 72 sqrt(3) V / (sum of squared edge lengths)^(3/2), which is 1 for a regular tetrahedron; and edge lengths
 divided by the requested size. Arguments: MESH SIZE ... Prints a Markdown row for each mesh."""
 
 import itertools
@@ -9,7 +9,7 @@ import sys
 import meshio
 import numpy as np
 
-ASKED = (0.71, 1.41)  # relative edge lengths between these count as reached, as in MMG
+ASKED = (0.71, 1.41)  # MMG counts edges of lengths between these, relative to the size, as good
 
 
 def measures(path, size):

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Meshes one CAD file or STL surface with Netgen: netgen_part.py INPUT OUT SIZE
 
-Writes tetrahedra and triangles, with the numbers of their solids and faces as tags, as Gmsh 2.2 with all digits of
-coordinates: Netgen's own export has six digits, which moves nodes off the shape."""
+Writes a Gmsh 2.2 file of the tetrahedra and triangles; tags are the numbers of their solids and faces. The coordinates
+have all digits. Netgen's own export has only six digits, which moves nodes off the shape."""
 
 from __future__ import annotations
 

@@ -1,8 +1,7 @@
 #!/usr/bin/env python3
-"""Compares the paper's profile (--profile paper: all that the proofs assume, and nothing else) with the
-defaults and with --coarsen off, on acute families and on shapes without acute angles, with a size so large
-that it has no effect: tets, vertices, angles, CPU seconds, and the counts that the paper's lemmas bound.
-Prints a Markdown table."""
+"""Compares --profile paper (which does all that the proofs assume, and nothing else) with the defaults and with
+--coarsen off, on acute families and on shapes without acute angles. The size is so large that it has no effect.
+Prints a Markdown table of tets, vertices, angles, CPU seconds, and the counts that the paper's lemmas bound."""
 
 from __future__ import annotations
 
@@ -30,7 +29,7 @@ acute: list[tuple] = [
 clean: list[tuple] = [("wedge", 90, 1), ("fan", 3, 0), ("skew_zigzags",
                                                         200, 135), ("helices", 200), ("torus_knot", 200)]
 ways = {"default": (2, []), "--coarsen off": (2, ["--coarsen", "off"]), "--profile paper": (0, ["--profile", "paper"])}
-counted = ("--coarsen off", "--profile paper")   # the defaults refine as --coarsen off does, except in narrow places
+counted = ("--coarsen off", "--profile paper")   # the defaults refine like --coarsen off, except in narrow places
 
 
 @dataclass
@@ -55,8 +54,8 @@ def mesh_text(run: MeshRun) -> str:
 
 
 def counts_text(run: MeshRun) -> str:
-    """Returns the text "peak cells per vertex; largest cavity outside hubs; largest R_v / r_v; looks per located point
-    or ball; cells per gap query; vertices inserted while a skinny cell waited". See WorkCounts."""
+    """Returns the text "peak cells per vertex; largest cavity outside hubs; largest R_v / r_v; inspections per located
+    point or ball; cells per gap query; vertices inserted while a skinny cell waited". See WorkCounts in mesher.h."""
     counts = run.report["statistics"]["counts"]
     aspect, queries = counts["largest_aspect"], counts["gap_queries"]
     return "; ".join([f"{counts['peak_cells_per_vertex']:.1f}", si(counts["largest_cavity_outside_hubs"]),

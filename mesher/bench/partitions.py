@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Measures how evenly `--partitions` divides meshes and how many faces it cuts, compared with Scotch's own
-program (scotch_gpart with its defaults, Debian's package scotch; the median of five runs, because no two are equal)
-and Gmsh's METIS (gmsh -part). All divide the same mesh. This script counts cut faces and sizes of partitions from the
-corners of the tetrahedra.
+program (scotch_gpart with its defaults, Debian's package scotch; the median of five runs, because their results
+differ) and with Gmsh's METIS (gmsh -part). All three divide the same mesh. This script counts cut faces and the tets of
+each partition; it reads both from the corners of the tetrahedra.
 partitions.py [--program build/release/bin/collarmesh]"""
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from tables import si, table
 sources = Path(__file__).resolve().parents[2]
 models = sources / "resources" / "models"
 partition_counts = (2, 4, 8, 16, 64)
-inputs = {  # with the options for their meshes
+inputs = {  # the file of each mesh and the options for making it
     "box": ("box.off", "--size", "0.082"),
     "bracket": ("bracket.off", "--size", "3"),
     "bracket, finer": ("bracket.off", "--size", "1.2"),
@@ -44,7 +44,7 @@ def tetrahedra(path: Path) -> tuple[np.ndarray, np.ndarray | None]:
 
 
 def pairs_with_a_face(tets: np.ndarray) -> np.ndarray:
-    """Returns the pairs of tets with a face in common, as an array (f, 2) of rows of `tets`."""
+    """Returns the pairs of tets with a common face, as an array (f, 2) of row numbers in `tets`."""
     corners = np.sort(tets, axis=1)
     sides = np.concatenate([np.delete(corners, k, axis=1) for k in range(4)])
     owner = np.tile(np.arange(len(tets)), 4)
@@ -89,7 +89,7 @@ def by_gmsh(mesh: Path, partitions: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def judged(partition: np.ndarray, pairs: np.ndarray, partitions: int) -> tuple[int, float]:
-    """Returns the number of cut faces, and by how much the largest partition exceeds the mean, relative to the mean."""
+    """Returns the number of cut faces, and the size of the largest partition divided by the mean size, minus 1."""
     sizes = np.bincount(partition, minlength=partitions)
     assert len(sizes) == partitions and partition.min() >= 0
     cut = int((partition[pairs[:, 0]] != partition[pairs[:, 1]]).sum())

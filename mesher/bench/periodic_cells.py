@@ -1,9 +1,9 @@
 """Representative cells with periodic inclusions: Voronoi grains as .poly, spheres as .brep.
 
-Run as a program it meshes cells of both kinds with and without periodic faces. For each cell it prints the ratios of
-tets and of time, the angles, and the findings. It checks by coordinates alone that points, edges, triangles and tags
-of opposite faces are images of each other. It prints the homogenized conductivity of each cell beside bounds, and
-checks for grains that it lies within them.
+As a program, this file meshes cells of both kinds with and without periodic faces. For each cell it prints the ratios
+of tets and of time (with / without), the angles, and the findings. It checks by coordinates alone that points, edges,
+triangles and tags of opposite faces are images of each other. It prints the homogenized conductivity of each cell
+beside bounds, and checks for grains that the conductivity lies within the bounds.
 """
 import argparse
 import itertools
@@ -16,15 +16,16 @@ import tempfile
 
 import numpy as np
 
-DIGITS = 12  # vertices are rounded to this many digits, so that opposite faces are images of each other
+DIGITS = 12  # vertices are rounded to this many decimals, so that opposite faces are exact images of each other
 ROUNDING = 1e-14  # tolerance of coordinates on faces of the unit cube
 
 
 def grain_polygons(seeds):
     """Returns the polygons of the periodic Voronoi cells of seeds, cut off at the faces of the unit cube.
 
-    The first result is a dict from the sorted vertex numbers of a polygon to (vertex numbers in order, the grains on
-    its two sides; -1 and below: outside). The second one is the vertices, an array of shape (n, 3).
+    The first result is a dict. Its keys are the sorted vertex numbers of a polygon; its values are pairs of the vertex
+    numbers in order and the grains on the two sides (negative: outside). The second result is the vertices, an array of
+    shape (n, 3).
     """
     shifts = np.array(list(itertools.product((-1, 0, 1), repeat=3)), float)
     points = np.concatenate([seeds + shift for shift in shifts])
@@ -41,8 +42,8 @@ def grain_polygons(seeds):
     for i, point in enumerate(points):
         if np.any(point < -0.7) or np.any(point > 1.7):
             continue
-        # Half spaces n . x <= d: bisectors to the nearest points, and the cube. The bisector of two points
-        # has the same rounded n and d for both, up to the sign.
+        # Half spaces n . x <= d: those of the bisectors to the nearest points, and the cube's. The bisector of two
+        # points has, up to the sign, the same rounded n and d from either point.
         near = np.argsort(np.linalg.norm(points - point, axis=1), kind="stable")[1:80]
         planes = [(points[j] - point, 0.5 * (points[j] @ points[j] - point @ point), j) for j in near]
         for axis in range(3):
@@ -62,7 +63,8 @@ def grain_polygons(seeds):
 
 
 def polygon_of(n, d, others):
-    """Returns the part of a plane within half spaces, or None."""
+    """Returns the polygon in which the plane n . x = d meets all half spaces m . x <= e of `others`; None if it is
+    empty or tiny."""
     length = np.linalg.norm(n)
     n, d = n / length, d / length
     u = np.cross(n, np.eye(3)[np.argmin(np.abs(n))])
@@ -86,8 +88,8 @@ def polygon_of(n, d, others):
 
 
 def write_grains(path, grains, seed):
-    """Writes a unit cube of `grains` grains, periodic in all directions, as a complex with a region for each
-    grain."""
+    """Writes a unit cube of `grains` grains, periodic in all directions, as a complex. All regions of a grain have
+    the same tag."""
     rng = np.random.default_rng(seed)
     seeds = rng.random((grains, 3))
     polygons, vertices = grain_polygons(seeds)
@@ -99,7 +101,7 @@ def write_grains(path, grains, seed):
     shifts = np.array(list(itertools.product((-1, 0, 1), repeat=3)), float)
     regions = []
     for k, point in enumerate(seeds):
-        # A grain that the cube's faces cut is several regions: one for each periodic image that overlaps the cube.
+        # A grain that crosses faces of the cube has several regions: one for each periodic image in the cube.
         for shift in shifts:
             inside = region_point(point + shift, np.concatenate([seeds + s for s in shifts]))
             if inside is not None:
@@ -110,8 +112,8 @@ def write_grains(path, grains, seed):
 
 
 def region_point(point, points):
-    """Returns a point in the cube to which `point` is the nearest of `points`: of random samples, the one farthest
-    from the borders of the cube and of the grain. Returns None if there is none."""
+    """Returns a point in the cube that is nearer to `point` than to all others of `points`. Picks the random sample
+    that is farthest from the borders of the cube and of the grain. Returns None if no sample is in both."""
     rng = np.random.default_rng(1)
     samples = np.concatenate([[point], np.clip(point, 0.01, 0.99) + 0.15 * rng.standard_normal((400, 3))])
     best, most = None, 0.0
@@ -128,7 +130,7 @@ def region_point(point, points):
 
 
 def write_spheres(path, spheres, radius, seed):
-    """Writes a unit cube with `spheres` spheres of equal radius that do not touch, periodic, as a CAD shape."""
+    """Writes a periodic unit cube with `spheres` spheres of equal radius, which do not touch, as a CAD shape."""
     import gmsh
 
     rng = np.random.default_rng(seed)
@@ -136,8 +138,8 @@ def write_spheres(path, spheres, radius, seed):
     centres = []
     while len(centres) < spheres:
         p = rng.random(3)
-        # Avoids spheres that nearly touch the cube's faces, edges and corners, where slivers of material
-        # would be left.
+        # Reject spheres that nearly touch a face, an edge or a corner of the cube: they would leave slivers of
+        # material there.
         walls = np.minimum(p, 1 - p)
         edges = [np.hypot(walls[a], walls[b]) for a, b in ((0, 1), (1, 2), (2, 0))]
         if any(abs(d - radius) < 0.15 * radius for d in (*walls, *edges, np.linalg.norm(walls))):
@@ -177,8 +179,8 @@ class Mesh:
         self.cells = {kind: (np.concatenate(nodes), np.concatenate(tags)) for kind, (nodes, tags) in self.cells.items()}
 
     def images(self, axis):
-        """Returns node numbers at the low end of an axis and their images at the high end; fails if an image is
-        missing."""
+        """Returns a dict from the nodes at the low end of an axis to their images at the high end. Fails if an image
+        is missing."""
         at = [np.flatnonzero(np.abs(self.points[:, axis] - end) < ROUNDING) for end in (0.0, 1.0)]
         others = [k for k in range(3) if k != axis]
         keys = [{tuple(np.round(self.points[v, others], 11) + 0.0): v for v in nodes} for nodes in at]
@@ -207,8 +209,9 @@ def verify(mesh):
 
 
 def conductivity(mesh, of_tag):
-    """Returns the homogenized conductivity of a cell (3 x 3) by elements of first order, its lower bound (Reuss) and
-    upper bound (Voigt), and the volumes and conductivities of the tets. `of_tag`: conductivity of a region."""
+    """Returns the homogenized conductivity of a cell (3 x 3) by elements of first order, its lower bound (Reuss), its
+    upper bound (Voigt), and the volumes and conductivities of the tets. `of_tag` maps a region's tag to its
+    conductivity."""
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import connected_components
     from scipy.sparse.linalg import spsolve
@@ -243,7 +246,8 @@ def conductivity(mesh, of_tag):
 
 
 def hashin_shtrikman(share, inclusion, matrix):
-    """Returns bounds on the conductivity of two phases; `share`: the share of the volume that inclusions have."""
+    """Returns the lower and the upper Hashin-Shtrikman bound on the conductivity of a matrix with inclusions.
+    `inclusion`, `matrix`: the conductivities (different ones); `share`: the inclusions' share of the volume."""
     low, high = sorted((inclusion, matrix))
     share_of_high = share if high == inclusion else 1 - share
     return (low + share_of_high / (1 / (high - low) + (1 - share_of_high) / (3 * low)),
@@ -251,8 +255,8 @@ def hashin_shtrikman(share, inclusion, matrix):
 
 
 def homogenize(kind, mesh):
-    """Returns the homogenized conductivity, its bounds and its eigenvalues. The conductivity is 10 in spheres and 1
-    around them, or between 1 and 10 in each grain."""
+    """Returns the homogenized conductivity, its lower and upper bound, and its eigenvalues. The conductivity is 10 in
+    spheres and 1 around them; each grain has a conductivity from 1 to 10."""
     if kind == "grains":
         made, low, high, _, _ = conductivity(mesh, lambda tag: 1 + 9 * (tag * 7 % 12) / 11)
     else:

@@ -1,8 +1,8 @@
 // Meshes a planar domain by CGAL's Delaunay refinement (Ruppert's algorithm, with Shewchuk's changes), for
 // planar_domains.py. Standard input: the number of points, and their coordinates; the number of segments,
 // and the numbers of their points; the number of holes, and a point in each. Arguments: the required
-// smallest angle in degrees, and the longest permitted edge (0: any). Prints the smallest and largest angle
-// in degrees, the number of triangles, and the seconds.
+// smallest angle in degrees, and the longest permitted edge (0: no limit). Prints the smallest and the
+// largest angle in degrees, the number of triangles, and the seconds that the refinement took.
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Delaunay_mesh_face_base_2.h>
 #include <CGAL/Delaunay_mesh_size_criteria_2.h>

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 """Meshes ten planar domains with collarmesh, with CGAL's version of Ruppert's refinement (Triangle's algorithm) and
-with Gmsh, and prints a Markdown table of angles and numbers of triangles. The domains are of kinds that papers and
-collections on 2D meshing show; this script computes their coordinates.
+with Gmsh, and prints a Markdown table of angles and numbers of triangles. The domains resemble those in papers and
+collections on 2D meshing; this script computes their coordinates.
 
 planar_domains.py collarmesh planar_cgal [SIZES_PER_DIAGONAL]
 
-In the columns "angles alone", meshes have no target edge length and only have to reach a smallest angle, as with
-`triangle -pq`: 20.7 degrees, the largest bound for which Ruppert's refinement is proved to end. In the columns "size",
-the target edge length is 1/40 of the diagonal (or 1/SIZES_PER_DIAGONAL)."""
+In the columns "angles alone", the only requirement is a smallest angle of 20.7 degrees, as with `triangle -pq`. This is
+the largest bound for which Ruppert's refinement is proved to end. In the columns "size", the target edge length is 1/40
+of the diagonal (or 1/SIZES_PER_DIAGONAL)."""
 
 import math
 import pathlib
@@ -21,8 +21,8 @@ ANGLE = 20.7
 
 
 class Domain:
-    """A domain inside an outline and outside holes. The outline is a loop of points; a hole is a loop and a point in
-    it. `inside`: segments inside the domain."""
+    """A domain inside an outline and outside holes. The outline is a loop of points; a hole is a pair of a loop and a
+    point inside the loop. `inside` are segments in the domain."""
 
     def __init__(self, name, source, outline, holes=(), inside=()):
         self.name, self.source, self.outline = name, source, outline
@@ -36,7 +36,7 @@ class Domain:
         return math.hypot(max(xs) - min(xs), max(ys) - min(ys))
 
     def numbered(self):
-        """Returns all points, and the segments by the points' numbers; points at the same place are merged."""
+        """Returns all points, with equal ones merged, and the segments as pairs of point numbers."""
         number, segments = {}, []
         for loop in self.loops():
             ids = [number.setdefault(p, len(number)) for p in loop]
@@ -51,7 +51,7 @@ class Domain:
         number = {p: i + 1 for i, p in enumerate(points)}
         polygons = [[number[p] for p in loop] for loop in self.loops()]
         polygons += [[number[a], number[b]] for a, b in self.inside] + [[i + 1]
-                                                                        for i in range(len(points))]  # keeps each
+                                                                        for i in range(len(points))]  # keeps points
         lines = [f"{len(points)} 3 0 0"] + [f"{i + 1} {x!r} {y!r} 0" for i, (x, y) in enumerate(points)]
         lines += ["1 0", f"{len(polygons)} {len(self.holes)}"] + \
             [f"{len(p)} " + " ".join(map(str, p)) for p in polygons]
@@ -82,8 +82,8 @@ def letter():
 
 
 def wavy(radius, waves, count):
-    """Returns `count` points of a circle with waves added to its radius. `waves`: [(number around the circle,
-    amplitude relative to `radius`, phase)]."""
+    """Returns `count` points of a circle with waves added to its radius. Each of `waves` is (number of periods around
+    the circle, amplitude relative to `radius`, phase)."""
     points = []
     for i in range(count):
         a = 2 * math.pi * i / count
@@ -190,7 +190,7 @@ DOMAINS = (letter, lake, guitar, bolted_plate, spiral, comb, gear, airfoil, snow
 
 
 def angles_of(path):
-    """Returns the smallest and the largest angle in degrees, and the number of triangles, of a binary STL file."""
+    """Reads a binary STL file. Returns the smallest and the largest angle, in degrees, and the number of triangles."""
     data = path.read_bytes()
     least, largest, count = 180.0, 0.0, struct.unpack_from("<I", data, 80)[0]
     for i in range(count):

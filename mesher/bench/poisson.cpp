@@ -1,10 +1,10 @@
-// Solves a Poisson problem with a known solution on the tets of a mesh file: errors and condition number.
-// poisson MESH [plate|shell|wedge]
+// Solves a Poisson problem with a known solution on the tets of a mesh file, and prints the errors and the
+// condition number: poisson MESH [plate|shell|wedge]
 //
-// Without a second argument the mesh is scaled to a diagonal of 1 and the values are given on all of its
-// boundary. The domains that a second argument names are thin, and their meshes have next to no inner nodes:
-// values are given at their ends only, and the solution does not change across them, so that its normal
-// derivative is zero elsewhere.
+// Without a second argument the mesh is scaled to a diagonal of 1 and the solution's values are given on the
+// whole boundary. The domains that the second argument names are thin, and their meshes have hardly any inner
+// nodes. There the values are given only at the ends of the domain. The solution is constant across the
+// thickness, so its normal derivative is zero on the rest of the boundary.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -38,7 +38,7 @@ Solution on_plate() {
           }};
 }
 
-// u = cos(2 phi) sin(b z + 0.2) around the z axis; values are given at the ends z = 0 and z = 10.
+// u = cos(2 phi) sin(b z + 0.2), phi the angle around the z axis; values are given at the ends z = 0, z = 10.
 Solution on_shell() {
   constexpr double b = 0.4;
   const auto value = [](const Point& p) {
@@ -55,8 +55,8 @@ Solution on_shell() {
           [](const Point& p) { return is_near(p.z, 0) || is_near(p.z, 10); }};
 }
 
-// u = exp(-a r^2) cos(b z), r from the z axis, which is the edge; values are given at the back x = 10 and at
-// the ends z = 0 and z = 4.
+// u = exp(-a r^2) cos(b z), where r is the distance from the z axis, the wedge's sharp edge. Values are given
+// at the back x = 10 and at the ends z = 0 and z = 4.
 Solution on_wedge() {
   constexpr double a = 0.05, b = 0.4;
   const auto squared_radius = [](const Point& p) { return p.x * p.x + p.y * p.y; };

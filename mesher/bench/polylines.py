@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Measures time and counts of work against the number of segments of loose polylines, and against the ratio of their
-sizes (spread), with this version and, on request, with an older one. The counts are the largest number of cells per
-vertex at any time, the largest number of cells that one insertion destroyed (except where very many features meet),
-the vertices inserted while skinny cells waited ("too early"), and the inspections per located point or ball
-(`looks`). Prints Markdown tables."""
+"""Measures time and counts of work, with this version and, on request, with an older one: against the number of
+segments of loose polylines, and against their spread (largest size / smallest size). The counts are the largest number
+of cells per vertex at any time, the largest number of cells that one insertion destroyed (except where very many
+features meet), the vertices inserted while skinny cells waited ("too early"), and the inspections per located point or
+ball (`looks`). Prints Markdown tables."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ from tables import exponent, machine, seconds, si, table
 from tuning import SizeCache
 
 size = 2.0   # the box is a unit cube, so only the features determine the mesh
-# The family, the function that returns its further parameters from the number n of segments, and the factor by which
-# --smallest is multiplied for this family: some families make n^2 vertices of n segments.
+# Each family has a name, a function that returns its further parameters from the number n of segments, and a factor by
+# which --smallest is multiplied. Factors are small where n segments give n^2 vertices.
 families: list[tuple] = [
     ("skew_zigzags", lambda n: (135,), 1), ("skew_zigzags", lambda n: (45,), 1), ("skew_combs", lambda n: (), 0.1),
     ("helices", lambda n: (), 0.3), ("torus_knot", lambda n: (), 1), ("random_walk", lambda n: (1,), 1),
     ("box_frames", lambda n: (1,), 1), ("graph", lambda n: (1,), 1), ("welded_mesh", lambda n: (), 1),
     ("crossed_wires", lambda n: (1,), 0.05), ("crossed_wires", lambda n: (n / 4,), 0.05),
     ("crossed_strips", lambda n: (1,), 0.02), ("outlines", lambda n: (), 1), ("star", lambda n: (1,), 0.1)]
-squared = ("crossed_wires", "crossed_strips")   # these families make n^2 vertices, so n grows by the root of the factor
+squared = ("crossed_wires", "crossed_strips")   # they make n^2 vertices, so n grows by the square root of --factors
 names = {("skew_zigzags", (45,)): "skew zigzags, creases", ("crossed_wires", (1,)): "crossed wires, near"}
 
 
@@ -47,8 +47,8 @@ def measure(mesher: Collarmesh, shape: AcuteInput, folder: Path) -> MeshRun | st
 
 
 def counts_of(run: MeshRun) -> list[str]:
-    """Returns the counts of a run. An older version has fewer counts: its largest cavity may be where very many
-    features meet, and it lacks the peak of cells per vertex."""
+    """Returns the counts of a run. An older version has fewer counts: it lacks the peak of cells per vertex, and its
+    largest cavity includes places where very many features meet."""
     counts = run.report["statistics"]["counts"]
     peak, early = counts.get("peak_cells_per_vertex"), counts.get("before_quality")
     looks = counts.get("looks")
@@ -59,7 +59,8 @@ def counts_of(run: MeshRun) -> list[str]:
 
 
 def cells_of(run: MeshRun | str, before: MeshRun | str | None) -> list[str]:
-    """Returns table entries: inserted vertices, seconds, exponent of seconds in vertices from `before`, counts."""
+    """Returns table entries: inserted vertices, seconds, exponent with which the seconds have grown with the vertices
+    since the run `before`, and the counts."""
     if isinstance(run, str):
         return ["", run, "", "", "", "", ""]
     vertices = run.report["statistics"]["vertices_inserted"]

@@ -2,9 +2,9 @@
 """Compares the predictions of `collarmesh info --predict` with meshes: tets and CPU seconds for CAD files and surfaces,
 at the default size and at multiples of it, with elements of both orders.
 
-The constants (src/predict/vertex_counts.h) were fitted to every fourth of the files that the defaults can mesh, in
-alphabetical order; the tables have separate rows for these files ("fitted") and for the others. --out keeps the
-measures of meshes, and a mesh that it holds is not made again. Predictions are always made again."""
+The constants of the predictions (src/predict/vertex_counts.h) were fitted to every fourth, in alphabetical order, of
+the files that the defaults can mesh. The tables have separate rows for these files ("fitted") and for the others. The
+file --out keeps the measures of meshes; a mesh that is in this file is not made again. Predictions always are."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from tables import machine, seconds, table
 sizes_per_diagonal = 20
 fitted_every = 4
 memory = int(12e9)
-near = 1.4   # largest factor between predicted and made tets, either way, that counts as near
+near = 1.4   # predicted / made numbers of tets from 1 / this to this count as near
 
 
 @dataclass
@@ -89,7 +89,7 @@ def mesh(path: Path, order: int, share: float, default: float | None, folder: Pa
 
 
 def predict(path: Path, order: int, sizes: list[float], folder: Path, options) -> tuple[list[dict], float]:
-    """Returns the predictions, and the CPU seconds that they took in addition to reading the part."""
+    """Returns one prediction for each size, and their total CPU seconds without those for reading the part."""
     command = [str(options.program), "info", str(path), "--json"]
     wishes = ["--order", str(order), "--predict", ",".join(repr(size) for size in sizes)]
     alone = run_limited(command, folder, options.limit, memory)

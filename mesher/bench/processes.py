@@ -13,7 +13,7 @@ from pathlib import Path
 
 
 class ProgramFailed(Exception):
-    """Raised if a program ended with an error, was killed or used up its time."""
+    """Raised if a program ends with an error, is killed or exceeds its time limit."""
 
 
 @dataclass
@@ -22,11 +22,11 @@ class Measured:
     wall: float        # seconds
     peak_bytes: int    # largest resident set
     output: str        # standard output and standard error, mixed
-    exit_code: int
+    exit_code: int     # negative: the signal that ended the program
 
 
 def pin_to_core(core: int | None) -> None:
-    """Runs this process and its children on one core: the given one or the last one that is permitted."""
+    """Makes this process and its children run on one core only: on `core`, or on the last permitted one if None."""
     allowed = sorted(os.sched_getaffinity(0))
     os.sched_setaffinity(0, {allowed[-1] if core is None else core})
 
@@ -47,16 +47,17 @@ for _ in range(int(sys.argv[1]) // block):
 
 
 def fetch_memory(most: int = 4 << 30) -> None:
-    """Allocates up to this many bytes of memory and frees them, so that the run that is measured next finds this
+    """Allocates up to `most` bytes of memory and frees them, so that the program that is measured next finds this
     memory ready: the host of a virtual machine is slow to hand out memory that was unused for a while. A separate
-    process does this, because programs inherit the largest resident set of their parent."""
+    process does this, because a measured program inherits the largest resident set of this script."""
     free = os.sysconf("SC_AVPHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     subprocess.run([sys.executable, "-c", use_memory, str(min(most, free * 3 // 4))], check=True)
 
 
 def run(command: list[str], folder: Path, time_limit: float, accepted: tuple[int, ...] = (0,)) -> Measured:
-    """Runs a command. Raises ProgramFailed if it exceeds the time limit or its exit code is not an accepted one, then
-    with the first line of output that contains "error", or else with the last line."""
+    """Runs a command. Raises ProgramFailed if the command exceeds the time limit (in wall seconds) or ends with an exit
+    code that is not accepted. In the latter case the message quotes the first line of output that contains "error", or
+    the last line if there is none."""
     log = folder / "output.txt"
     begin = time.perf_counter()
     with open(log, "wb") as out:
@@ -80,9 +81,8 @@ def run(command: list[str], folder: Path, time_limit: float, accepted: tuple[int
 
 
 def run_limited(command: list[str], folder: Path, cpu_limit: int, memory_limit: int) -> Measured:
-    """Runs a command with limits; any exit code is accepted, and a negative one is the signal that ended the
-    program. The limits are CPU seconds and bytes of address space. The program is also killed if its wall
-    time exceeds ten times its CPU limit."""
+    """Runs a command with limits, and accepts any exit code. The limits are CPU seconds and bytes of address
+    space. The program is also killed if its wall seconds exceed ten times the limit of CPU seconds."""
     def limit() -> None:
         resource.setrlimit(resource.RLIMIT_CPU, (cpu_limit, cpu_limit + 1))
         resource.setrlimit(resource.RLIMIT_AS, (memory_limit, memory_limit))

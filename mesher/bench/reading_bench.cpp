@@ -1,4 +1,4 @@
-// Benchmarks of readers, and of the builder of the complex, on a sphere of 4 * rings^2 triangles.
+// Benchmarks of readers and of the builder of the complex, on a sphere of 4 * n^2 triangles; n: the argument.
 #include <benchmark/benchmark.h>
 
 #include <array>

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """Meshes real files as they are: CAD files and surfaces of the given folders, by collarmesh with its defaults, by Gmsh
 (HXT), by TetGen and by CGAL's Alpha_wrap_3 followed by Mesh_3 (wrap_mesh.cpp), all at a twentieth of the diagonal.
-TetGen and the wrap get surfaces only: their triangles without any repair, but with equal points merged.
+TetGen and the wrap get no CAD files. They get the triangles of surfaces without any repair, but with equal points
+merged.
 
 Outcomes: meshed (all tets have positive volume), guarantee missed (collarmesh's exit code 7), unusable mesh
 (no error, but no tets or flat or inverted ones), refused (an error said so), past the limit (of CPU seconds
-or memory), crashed. Prints Markdown tables of outcomes and of the meshes' measures; --out keeps every run,
-and a run that it holds is not made again."""
+or memory), crashed. Prints Markdown tables of outcomes and of the meshes' measures. The file --out keeps the
+results of all runs; a run that is in this file is not made again."""
 
 from __future__ import annotations
 
@@ -55,7 +56,7 @@ class Row:
 
 
 class Part:
-    """A file, and its triangles as other programs read them."""
+    """A file and, for surfaces, its triangles in the formats of the peers."""
 
     def __init__(self, path: Path, folder: Path, converter: Path):
         self.path, self.folder, self.converter = path.resolve(), folder, converter
@@ -64,7 +65,8 @@ class Part:
         self.triangles: Surface | None = None
 
     def prepare(self) -> None:
-        """Writes a surface as part.off and part.stl, without any repair; raises OSError when it cannot be read."""
+        """Writes a surface as part.off and part.stl, without any repair; does nothing for CAD files. Raises OSError if
+        the file cannot be read."""
         if self.kind == "CAD" or self.triangles is not None:
             return
         off = self.folder / "part.off"
@@ -135,13 +137,13 @@ class WrapProgram:
 
 
 def outcome_of(measured: Measured, cpu_limit: int) -> str:
-    """Returns the outcome, as far as the exit code and the output show it."""
+    """Returns the outcome as far as exit code and output show it; `measure` may change it to "unusable mesh"."""
     ended_by = -measured.exit_code if measured.exit_code < 0 else 0
     out_of_memory = re.search(r"bad_alloc|out of memory|cannot allocate", measured.output, re.IGNORECASE)
     if ended_by == signal.SIGXCPU or out_of_memory or ended_by == signal.SIGKILL and measured.cpu >= 0.9 * cpu_limit:
         return "past the limit"
-    # Debian's TetGen throws the number of its error without catching it: 3 if facets intersect, 4 at features
-    # too small for it.
+    # Debian's TetGen reports an error by throwing its number, which nothing catches: 3 if facets intersect, 4 if
+    # features are too small for it.
     if ended_by == signal.SIGABRT and "throwing an instance of 'int'" in measured.output:
         return "refused"
     return "crashed" if ended_by else "refused" if measured.exit_code else "meshed"
@@ -154,7 +156,7 @@ def last_error(output: str) -> str:
 
 
 def orientation(corners: np.ndarray) -> Fraction:
-    """Returns six times the signed volume, exactly."""
+    """Returns six times the signed volume of a tet, computed exactly."""
     first, *others = ([Fraction(float(x)) for x in corner] for corner in corners)
     a, b, c = ([x - y for x, y in zip(corner, first)] for corner in others)
     return (a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2])
@@ -162,8 +164,9 @@ def orientation(corners: np.ndarray) -> Fraction:
 
 
 def measure(row: Row, mesh_file: Path) -> None:
-    """Fills in the measures of the mesh; changes the outcome if it has no tets, or tets without positive volume."""
-    # meshio treats coordinates of version 1 as single precision, however many digits they have.
+    """Fills in the measures of the mesh. The outcome becomes "unusable mesh" if there are no tets or if a tet's volume
+    is not positive."""
+    # Write version 2: of version 1, meshio reads coordinates in single precision, however many digits they have.
     mesh_file.write_text(re.sub(r"(MeshVersionFormatted\s+)1", r"\g<1>2", mesh_file.read_text(), count=1))
     cells = meshio.read(mesh_file)
     tets = np.concatenate([np.empty((0, 4), int), *(c.data for c in cells.cells if c.type == "tetra")])
@@ -257,7 +260,7 @@ def wrong_volume(row: Row, expected: float) -> bool:
 
 
 def comparison_table(rows: list[Row], kind: str, names: list[str]) -> str:
-    """Returns a table that compares each peer with us: medians over the files that both meshed."""
+    """Returns a table that compares each peer with collarmesh: medians over the files that both have meshed."""
     def meshed(name: str) -> dict[str, Row]:
         return {row.file: row for row in rows if (row.kind, row.mesher, row.outcome) == (kind, name, "meshed")}
 

@@ -1,4 +1,4 @@
-// Builds a complex and refines it, without certificate and output, for profile.sh and versions.py.
+// Builds a complex and refines it; makes no certificate and writes no mesh. For profile.sh and versions.py.
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>

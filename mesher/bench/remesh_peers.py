@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Remeshes meshes of Gmsh (Delaunay, without its optimization), of TetGen (with bounds on quality; and without, so with
-slivers and needles) and of Netgen. Their edge lengths are kept. Each mesh is remeshed with --against the input that it
-was made from, and without. Prints a Markdown table: whether every guarantee holds, tets, smallest and largest dihedral
-angle, share of tets with an angle below 8 or above 150 degrees, and CPU seconds."""
+"""Remeshes meshes of Gmsh (Delaunay, without its optimization), of Netgen, and of TetGen (with bounds on quality, and
+without these, so with slivers and needles). Remeshing keeps the edge lengths. Each mesh is remeshed twice: with
+--against and the input from which it was made, and without. Prints a Markdown table: whether every guarantee holds,
+tets, smallest and largest dihedral angle, share of tets with an angle below 8 or above 150 degrees, CPU seconds."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ header = ["input", "mesher", "follows", "tets", "angles", "beyond 8 to 150", "th
 
 
 class Peers:
-    """The programs that mesh an input at a size. Each peer's method returns the mesh's path."""
+    """The programs that mesh an input at a size. The method of each peer returns the path of its mesh."""
 
     def __init__(self, program: Path, limit: float) -> None:
         self.program, self.limit = program, limit
@@ -87,7 +87,7 @@ def rows(peers: Peers, part: Path, size: float) -> list[list[str]]:
                     found.append([part.name, name, "", "no mesh: " + str(failure).replace("|", " ")[:60], *[""] * 7])
                 continue
             before = angles_of(mesh)
-            # TetGen's nodes on curves are on the chords of the triangles that it was given.
+            # TetGen gets triangles, so its nodes on curves are on chords: compare with these triangles.
             shape = folder / "complex.smesh" if name.startswith("TetGen") else part
             for follows, against in (("input", ["--against", str(shape)]), ("itself", [])):
                 found.append([part.name, name, follows, *before, *remeshed(peers, mesh, against, folder)])

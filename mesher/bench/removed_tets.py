@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Compares the cost of removing a tetrahedron with that of making one, for CAD parts with the defaults.
 
-Coarsening's time per removed tetrahedron is divided by refinement's time per tetrahedron that it makes, and by the time
-of refinement and improvement per tetrahedron in runs with --coarsen off (because coarsening also improves). Each time
-is the least wall time of some runs. Prints a Markdown table of quantiles over the parts; with --each another table with
-a line for every part."""
+Coarsening's time per removed tetrahedron is divided by two times: by refinement's time per tetrahedron that it makes;
+and, because coarsening also improves the mesh, by the time of refinement and improvement per tetrahedron in runs with
+--coarsen off. Each time is the least wall time of some runs. Prints a Markdown table of quantiles over the parts; with
+--each another table with a line for every part."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ from tables import machine, table
 @dataclass
 class Costs:
     part: str
-    made: int
-    left: int
+    made: int             # tetrahedra before coarsening
+    left: int             # tetrahedra after coarsening
     removing: float       # microseconds per removed tetrahedron
     making: float         # microseconds per tetrahedron made by refinement
     making_good: float    # microseconds per tetrahedron refined and improved, with --coarsen off

@@ -1,5 +1,5 @@
-// Benchmarks of repair: spheres in a cubic lattice that intersect their neighbours, each turned differently;
-// and a valid surface.
+// Benchmarks of repair. One input is a cubic lattice of spheres, each rotated differently, that intersect
+// their neighbours; the other one is a valid surface.
 #include <benchmark/benchmark.h>
 
 #include <array>
@@ -53,7 +53,7 @@ void building(benchmark::State& state, const PolygonSoup& soup) {
 }
 
 BENCHMARK_CAPTURE(repairing, bunch, bunch(3, 30))->Unit(benchmark::kMillisecond)->Iterations(1);
-// A valid surface costs no more than the builder: these two lines should be equal.
+// Repair of a valid surface should take no longer than the builder alone, so these two times should be equal.
 BENCHMARK_CAPTURE(repairing, sphere, sphere(158))->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(building, sphere, sphere(158))->Unit(benchmark::kMillisecond);
 

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Estimates, with a simulated schedule, how much faster whole runs are with more threads than this machine has cores.
-With COLLARMESH_RECORD_COSTS the program runs on one core, divides its work as for several threads (--threads), and
-records the CPU seconds of each piece of each parallel part, and of the serial work between these parts. It then
-simulates workers, each of which takes the next piece when it is free. Serial work runs on one worker, and each parallel
-part costs a barrier. The estimate ignores that workers share caches, memory and the system. Prints Markdown tables."""
+With COLLARMESH_RECORD_COSTS collarmesh runs on one core, divides its work as for several threads (--threads), and
+records the CPU seconds of each piece of each parallel part, and of the serial work between these parts. It also
+simulates workers, each of which takes the next piece as soon as it is free. This script sums up these times: serial
+work runs on one worker, and each parallel part costs a barrier. The estimate ignores that workers share caches, memory
+and the system. Prints Markdown tables."""
 
 from __future__ import annotations
 
@@ -21,7 +22,7 @@ workers = (2, 4, 8, 16, 32, 64)
 
 
 def record(program: Path, inputs: list[Path], size: str, threads: int, suffix: str, time_limit: float) -> list[dict]:
-    """Returns the rows of the table that the program records, one for each stage and place in the code."""
+    """Returns the rows of the table that collarmesh writes: one for each place in the code, in each stage."""
     os.environ |= {"COLLARMESH_CORES": str(threads), "COLLARMESH_RECORD_COSTS": "costs.tsv"}
     with tempfile.TemporaryDirectory() as folder:
         run_program([str(program), *map(str, inputs), "--size", size, "--threads", str(threads), "-o", f"mesh{suffix}",
@@ -32,7 +33,8 @@ def record(program: Path, inputs: list[Path], size: str, threads: int, suffix: s
 
 
 def by_stage(rows: list[dict]) -> dict[str, dict[str, float]]:
-    """Returns the sums of the rows of each stage, in the order of the stages; the last one, "all", is the total."""
+    """Returns, for each stage, the sums of the columns over its rows. The stages are in their order in a run; "all",
+    the total, is the last."""
     sums: dict[str, dict[str, float]] = defaultdict(lambda: defaultdict(float))
     order = ["start", "read", "complex", "refine", "coarsen", "improve", "project", "second order", "check", "write"]
     for row in sorted(rows, key=lambda row: order.index(row["stage"]) if row["stage"] in order else len(order)):

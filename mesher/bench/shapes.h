@@ -16,7 +16,7 @@ std::vector<Point> well_spaced_points(std::size_t n);
 /// Returns n independent uniform points in the unit cube.
 std::vector<Point> random_points(std::size_t n, unsigned seed);
 
-/// Returns the points in the order of a space-filling curve.
+/// Returns the same points, sorted along a space-filling curve.
 std::vector<Point> spatially_sorted(const std::vector<Point>& points);
 
 PolygonSoup unit_box();

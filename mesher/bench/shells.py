@@ -2,18 +2,20 @@
 
 Each file of the folder (STEP, IGES, BREP) is meshed with a target edge length of 1/20 and of 1/60 of its diagonal, by
 `collarmesh --dimension 2` and by Gmsh (its Python module, with the default algorithm and only a largest size). Each
-runs in a process of its own with one thread, so that the CPU seconds include everything from reading to writing; they
-are also shown without OpenCASCADE's reading and tessellation. Angles, counts and distances are measured in the same
-way for both meshes, from files in Gmsh's format:
+mesher runs in a process of its own with one thread, so its CPU seconds include everything from reading to writing. The
+table also has the CPU seconds without OpenCASCADE's reading and tessellation. Angles, counts and distances are measured
+in the same way for both meshes, from files in Gmsh's format:
 
-- angles: of all triangles ("raw"), and without sharp corners of the input ("away"), which are triangles with an angle
-  below 20 degrees at a vertex of the input, between two sides on edges of the input;
-- distance: the largest distance of a triangle's centre from the input's faces, in target edge lengths; OpenCASCADE
-  cuts the faces into triangles (`collarmesh repair`); needs the Python module vtk;
-- counts at equal distance ("equal"): where Gmsh's mesh is farther from the faces than ours, Gmsh makes another mesh,
-  with the fewest elements per circle (6, 12 or 24) at which it is as near as ours, and the counts are compared.
+- angles: of all triangles ("raw"), and of the triangles that are not at a sharp corner of the input ("away"). A
+  triangle is at a sharp corner if it has an angle below 20 degrees at a vertex of the input, between two sides that lie
+  on edges of the input;
+- distance: the largest distance of a triangle's centre from the input's faces, in target edge lengths. OpenCASCADE
+  (through `collarmesh repair`) cuts the faces into triangles for this. Needs the Python module vtk;
+- counts at equal distance ("equal"): if Gmsh's mesh is farther from the faces than ours, Gmsh makes another mesh, with
+  the fewest elements per circle (6, 12 or 24) at which its mesh is as near as ours. The counts of the two meshes are
+  compared.
 
-`--kept FOLDER` keeps Gmsh's measures and the triangles of the faces there, so that later runs are shorter.
+`--kept FOLDER` keeps Gmsh's measures and the triangles of the faces in this folder, so that later runs are shorter.
 """
 
 import argparse
@@ -55,7 +57,7 @@ SHARP = 20  # degrees
 
 
 def run(command, **environment):
-    """Runs a command; returns its exit code (None if it exceeded the time limit), its CPU seconds and output."""
+    """Runs a command. Returns its exit code (None if it exceeded the time limit), CPU seconds and standard output."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     try:
         done = subprocess.run(command, capture_output=True, text=True, timeout=LIMIT, check=False,
@@ -69,7 +71,7 @@ def run(command, **environment):
 
 
 def stages_of(path):
-    """Returns the recorded CPU seconds by stage; some stages are OpenCASCADE's work."""
+    """Returns the recorded CPU seconds of each stage; some stages are OpenCASCADE's work."""
     stages = {}
     for line in pathlib.Path(path).read_text().splitlines()[1:]:
         stage, _, _, _, serial, work = line.split("\t")[:6]
@@ -78,12 +80,13 @@ def stages_of(path):
 
 
 def own_seconds(row):
-    """Returns the CPU seconds without those of OpenCASCADE's reading and tessellation."""
+    """Returns the CPU seconds of a run without those for OpenCASCADE's reading and tessellation."""
     return row["seconds"] - row.get("reading", 0) - row.get("cutting", 0)
 
 
 def read_mesh(path):
-    """Returns points, triangles, the edges on curves as pairs, and which points are vertices of the input."""
+    """Returns points, triangles, the set of edges on curves (pairs of point numbers in ascending order), and the set of
+    points that are vertices of the input."""
     import gmsh
 
     gmsh.initialize()
@@ -135,8 +138,8 @@ def measures_of(path, reference, size):
 
 
 def distance_between(points, reference, size):
-    """Returns the largest distance of the points from the triangles of an STL file, divided by the size; None
-    without that file or vtk."""
+    """Returns the largest distance of a point from the triangles of an STL file, divided by the size. Returns None
+    if this file or vtk is missing."""
     if not pathlib.Path(reference).exists():
         return None
     try:
@@ -185,7 +188,7 @@ def gmshs(path, size, folder, per_circle=0):
 
 
 def kept_or_made(arguments, path, share, size, folder, per_circle=0):
-    """Returns Gmsh's row, from the folder --kept if that has it."""
+    """Returns Gmsh's row; reads it from the folder --kept if it is there."""
     kept = pathlib.Path(arguments.kept) / f"{path.name}.{share:g}.{per_circle}.json" if arguments.kept else None
     if kept and kept.exists():
         return json.loads(kept.read_text())
@@ -198,7 +201,7 @@ def kept_or_made(arguments, path, share, size, folder, per_circle=0):
 
 def at_equal_distance(arguments, path, share, size, folder, mine, other):
     """Returns Gmsh's row with the fewest elements per circle at which its mesh is as near to the faces as ours;
-    None if there is none."""
+    None if 24 are too few."""
     distance = lambda row: (row.get("measures") or {}).get("distance")
     if distance(mine) is None:
         return None
@@ -236,14 +239,15 @@ def summary(name, rows):
 
 
 def ratio_of_counts(pairs):
-    """Returns the median ratio of triangle counts, first mesh over second, and the number of pairs, as text."""
+    """Returns, as text, the median ratio of triangle counts (first mesh of a pair over the second) and the number of
+    pairs."""
     counts = [a["measures"]["count"] / b["measures"]["count"] for a, b in pairs
               if a.get("measures") and b and b.get("measures")]
     return f"{statistics.median(counts):.2f} on {len(counts)} files" if counts else "none"
 
 
 def rows_of_file(arguments, path, share, folder):
-    """Returns the rows of a file: ours, Gmsh's, and Gmsh's at equal distance."""
+    """Returns three rows for a file: ours, Gmsh's, and Gmsh's at equal distance; None where there is none."""
     info = subprocess.run([arguments.program, "info", path], capture_output=True, text=True, check=False).stdout
     found = re.search(r"diagonal ([\d.e+-]+)", info)
     if not found:

@@ -1,10 +1,10 @@
-// Compares the output size with the paper's claim: the number of tets divided by the integral of h^-3, for
-// families in which an angle or the spread varies. Prints Markdown tables; takes no arguments.
+// Tests the paper's claim on the size of meshes: computes the number of tets divided by the integral of h^-3,
+// for families in which an angle or the spread varies. Prints Markdown tables; takes no arguments.
 //
 // The feature size h(x) is the smallest distance within which x has two features that are disjoint (the local
 // feature size, paper, Definition 3) or that meet at a crease (as in the gap size, Definition 2); h is
-// 1-Lipschitz and 0 at creases only. Both the number and the integral leave out tets in collars. The target
-// edge length is so large that it has no effect.
+// 1-Lipschitz and is 0 only at creases. Tets in collars belong neither to the number nor to the integral. The
+// target edge length is so large that it has no effect.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -52,10 +52,10 @@ struct Feature {
   unsigned dimension;
   Index index;
   std::vector<std::array<Point, 3>> triangles;  // degenerate below dimension 2
-  std::set<Index> vertices, curves;             // vertices and curves that it contains
+  std::set<Index> vertices, curves;             // vertices and curves that the feature contains
 };
 
-/// The features of a complex of straight curves and planar patches; evaluates h at points.
+/// The feature size h of a complex of straight curves and planar patches; at(x) returns h(x).
 class FeatureSize {
  public:
   explicit FeatureSize(const Plc& plc) : plc_(plc) {
@@ -103,7 +103,7 @@ class FeatureSize {
   }
 
  private:
-  static constexpr double acute = 60;  // degrees, as for creases
+  static constexpr double acute = 60;  // degrees; angles below this make creases
 
   std::array<Point, 2> ends(Index curve) const {
     const auto& points = plc_.curves[curve].points;
@@ -117,8 +117,8 @@ class FeatureSize {
     return both;
   }
 
-  // Returns whether two features are disjoint or meet at an acute angle, and neither is in the border of the
-  // other.
+  // Returns whether two features are disjoint, or meet at an acute angle and neither of them is in the border
+  // of the other.
   bool are_separate(const Feature& f, const Feature& g) const {
     const auto curves = common(f.curves, g.curves), vertices = common(f.vertices, g.vertices);
     if (curves.empty() && vertices.empty()) return true;
@@ -136,8 +136,8 @@ class FeatureSize {
                        [&](Index v) { return !on_common_curve(v) && angle_at_vertex(f, g, v) < acute; });
   }
 
-  // Returns the smallest angle in degrees between the half planes of two patches at a curve; a patch on both
-  // sides of the curve has two half planes.
+  // Returns the smallest angle, in degrees, between a half plane of f and one of g at a curve. A patch has
+  // two half planes there if it continues on both sides of the curve.
   double angle_at_curve(const Feature& f, const Feature& g, Index curve) const {
     const auto [a, b] = ends(curve);
     const Vector axis = unit(b - a);
@@ -173,7 +173,8 @@ class FeatureSize {
     return least;
   }
 
-  // Returns the sectors of the feature's triangles at their corner p, between the rays to the other corners.
+  // Returns the feature's sectors at p: for each triangle with the corner p, the sector between the rays from
+  // p to the other two corners.
   static std::vector<plc::Sector> sectors(const Feature& f, const Point& p) {
     std::vector<plc::Sector> found;
     for (const auto& t : f.triangles)
@@ -190,8 +191,8 @@ class FeatureSize {
   std::vector<std::pair<double, std::size_t>> nearest_;  // scratch
 };
 
-/// Returns the integral of h^-3 over the tets outside collars, by samples in each tet; tets are small where h
-/// is small.
+/// Returns the integral of h^-3 over the tets outside collars, estimated at random points of each tet. A few
+/// points per tet suffice, because tets are small where h is small.
 double integral(const TetMesh& mesh, FeatureSize& h) {
   constexpr int samples = 16;
   std::mt19937_64 random(1);

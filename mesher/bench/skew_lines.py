@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Meshes a box with n points on each of two skew lines: their Delaunay triangulation has n^2 tetrahedra, but a good
-mesh with these points needs only O(n). Prints CPU seconds of collarmesh and TetGen, and the exponents with which
-they grow with n."""
+"""Meshes a box with n points on each of two skew lines. The Delaunay triangulation of these points has about n^2
+tetrahedra, but a good mesh with these points needs only O(n). Prints CPU seconds of collarmesh and TetGen, and the
+exponents with which the seconds grow with n."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tuning import SizeCache
 
 
 def measure(mesher, points_per_line: int, folder: Path, rounds: int) -> MeshRun | str:
-    """Returns the run with the median CPU time, or the error."""
+    """Returns the run with the median CPU time, or the error message of the mesher."""
     surface = skew_lines(points_per_line)
     mesher.prepare(surface, folder)
     runs = []
@@ -30,7 +30,7 @@ def measure(mesher, points_per_line: int, folder: Path, rounds: int) -> MeshRun 
 
 
 def size(mesher, diagonal: float) -> float:
-    """Returns a size without effect: the points alone determine the mesh."""
+    """Returns a size that is too large to have an effect, so that the points alone determine the mesh."""
     return float("inf") if isinstance(mesher, TetGen) else diagonal
 
 

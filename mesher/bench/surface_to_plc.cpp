@@ -1,4 +1,4 @@
-// Measures seconds per stage and peak memory of building a complex from a surface file:
+// Measures how many seconds reading a surface file and building its complex take, and the peak memory:
 //   surface_to_plc write RINGS FILE     write a sphere of 4 * RINGS^2 triangles
 //   surface_to_plc read FILE            read a file into a complex, and print the measures
 #include <sys/resource.h>

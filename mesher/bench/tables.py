@@ -16,7 +16,7 @@ def table(header: list[str], rows: list[list[str]]) -> str:
 
 
 def si(value: float) -> str:
-    """Returns a number as text with an SI prefix: 1234567 as "1.23M"."""
+    """Returns a number as text with three digits and a suffix k or M: 1234567 as "1.23M"."""
     for limit, unit in ((1e6, "M"), (1e3, "k")):
         if float(f"{value:.3g}") >= limit:   # 999999 is 1M
             return f"{value / limit:.3g}{unit}"
@@ -24,7 +24,7 @@ def si(value: float) -> str:
 
 
 def tets_text(run) -> str:
-    """Returns the number of tets, with a mark if the mesh missed a guarantee."""
+    """Returns the number of tets as text, with the mark (7) if the mesh misses a guarantee."""
     return si(run.tets) + (" (7)" if run.guarantee_missed else "")
 
 
@@ -33,7 +33,7 @@ def seconds(value: float) -> str:
 
 
 def exponent(m1: float, t1: float, m2: float, t2: float) -> float:
-    """Returns the slope of log t over log m."""
+    """Returns the exponent of growth t ~ m^exponent between two measurements."""
     return math.log(t2 / t1) / math.log(m2 / m1)
 
 

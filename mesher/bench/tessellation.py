@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Checks that a finely tessellated surface does not make a smooth part's mesh more expensive: spheres of 1k
-to 90k triangles meshed at one size. Prints CPU seconds and their ratio to those of the coarsest sphere."""
+"""Tests whether a smooth part is more expensive to mesh if its surface is finely tessellated: meshes spheres of
+1k to 90k triangles at one size. Prints CPU seconds, and their ratio to those for the coarsest sphere."""
 
 from __future__ import annotations
 

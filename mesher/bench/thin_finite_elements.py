@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Solves a Poisson problem with a known solution, by one solver (`poisson`), on thin domains, where one layer of
-tetrahedra spans the thickness: a plate (10 by 10 by 0.2), a shell (a tube of radius 5, 10 high and 0.2 thick) and a
-wedge of 5 degrees. collarmesh and Gmsh (HXT) mesh these CAD shapes at the same sizes with elements of both orders.
-Values are given at the ends only; the solution does not change across the thickness. On a surface the error is
-proportional to unknowns^(-order / 2). The error of the gradient per unknown is the error divided by this power, so
-that meshes with different numbers of tets can be compared. Prints a Markdown table."""
+"""Solves Poisson problems with known solutions, always by the same solver (`poisson`), on thin domains, in which one
+layer of tetrahedra spans the thickness: a plate (10 by 10 by 0.2), a shell (a tube of radius 5, 10 high and 0.2 thick)
+and a wedge of 5 degrees. collarmesh and Gmsh (HXT) mesh these CAD shapes at the same sizes, with elements of first and
+of second order. Values are given only at the ends of a domain; the solution is constant across the thickness. The
+error of the gradient is proportional to unknowns^(-order / 2), as on a surface. The column "per unknown" has the error
+divided by this power, so that meshes with different numbers of tets can be compared. Prints a Markdown table."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def mesh_by_gmsh(shape: Path, size: float, order: int, out: Path) -> None:
         gmsh.model.mesh.generate(3)
         gmsh.model.mesh.setOrder(order)
         gmsh.write(str(out))
-    except Exception as error:   # the module raises no type of its own
+    except Exception as error:   # Gmsh's module has no exception type of its own
         raise ProgramFailed(str(error)) from error
     finally:
         gmsh.model.remove()

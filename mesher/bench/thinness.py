@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Measures the cost of meshing as one feature of a body gets thinner, and whether volumes are kept.
+"""Measures how the cost of meshing grows as one feature of a body gets thinner, and whether volumes are kept.
 
 thinness.py [--families wedge step ...] [--thinness 1e-1 1e-2 ...] [--program collarmesh] [--limit 60]
             [--options '--order 2']
@@ -8,10 +8,10 @@ Each body is about 10 target edge lengths wide. --thinness gives the thickness o
 lengths. The table has a row for each family and a column for each thickness. Its entries are the vertices that
 refinement inserted (in the last try), the tets and the CPU seconds of the whole run; then the exit code unless
 it is 0, and the number of regions if it is wrong. The number of vertices grows with a power of 1 / thickness.
-Two columns give the largest exponent between neighbouring thicknesses: "power to S" for thicknesses down to the
-feature size S (--feature-size), "below" for smaller ones. "volumes off" is the largest relative error of a
-region's volume in runs with exit code 0, or the error of the total volume if a region is missing. Rows go to
---out as they come."""
+Two columns give the largest exponent of this growth between neighbouring thicknesses: "power to S" for
+thicknesses down to the feature size S (--feature-size), "below" for smaller ones. "volumes off" is the largest
+relative error of a region's volume in runs with exit code 0; if a region is missing, it is the error of the total
+volume. --out gets each row as soon as it is measured."""
 
 from __future__ import annotations
 
@@ -40,7 +40,8 @@ memory = 12 << 30
 
 @dataclass
 class Body:
-    """Closed surfaces, or a complex, or solids of a CAD file; and the exact volumes of its regions."""
+    """A body with the exact volumes of its regions. It is given by closed surfaces, a complex, or solids of a CAD file
+    (expressions for FreeCAD)."""
     volumes: list[float]
     shells: list[Surface] = field(default_factory=list)
     complex: Surface | None = None
@@ -64,7 +65,8 @@ class Body:
 
 
 def extruded(outline: list[tuple[float, float]]) -> Surface:
-    """Returns the prism over a polygon in the plane of x and z, extruded along y. The polygon turns from x to z."""
+    """Returns the prism over a polygon in the plane of x and z, extruded along y. Precondition: the polygon is oriented
+    from the x axis towards the z axis."""
     n = len(outline)
     points = [(x, y, z) for y in (0.0, wide) for x, z in outline]
     sides = [[k, n + k, n + (k + 1) % n, (k + 1) % n] for k in range(n)]
@@ -111,7 +113,7 @@ def sliver_face(h: float) -> Body:
 
 
 def fold(h: float) -> Body:
-    """Returns a block whose upper face is folded like a Z; the folds are h high."""
+    """Returns a block whose upper face is folded like a Z; the folds are about h high."""
     return profile((0, 0), (10, 0), (10, 6), (4, 6), (6, 6 + h), (0, 6 + 2 * h))
 
 
@@ -141,7 +143,7 @@ def layer(h: float) -> Body:
 
 
 def cylinders(h: float) -> Body:
-    """Returns two prisms of 96 sides, edge against edge, with a gap of width h."""
+    """Returns two prisms of 96 sides that face each other with an edge, with a gap of width h."""
     angles = [2 * math.pi * k / 96 for k in range(96)]
     outline = [(3 * math.cos(a), 3 * math.sin(a)) for a in angles]
     bodies = [profile(*((x + at, z) for x, z in outline)) for at in (-3 - h / 2, 3 + h / 2)]
@@ -149,7 +151,7 @@ def cylinders(h: float) -> Body:
 
 
 def cad_cylinders(h: float) -> Body:
-    """Returns two round cylinders, as a STEP file, with a gap of width h."""
+    """Returns two round cylinders side by side, as a STEP file, with a gap of width h."""
     return Body(2 * [math.pi * 9 * wide],
                 step=f"[cylinder(3, {wide}, 0, {3 + h / 2}), cylinder(3, {wide}, 0, {-3 - h / 2})]")
 
@@ -182,8 +184,8 @@ class Row:
 
 
 def difference(made: list[float], exact: list[float]) -> float:
-    """Returns the largest relative difference of a region's volume; if the numbers of regions differ, that of the
-    total volume. Compares sorted volumes, because the mesher numbers regions in its own order."""
+    """Returns the largest relative error of a region's volume; if the numbers of regions differ, the relative error of
+    the total volume. Compares sorted volumes, because the mesher numbers regions in its own order."""
     if len(made) != len(exact):
         return abs(sum(made) / sum(exact) - 1)
     return max(abs(a / b - 1) for a, b in zip(sorted(made), sorted(exact)))
@@ -211,7 +213,7 @@ def measure(family: str, thinness: float, options: argparse.Namespace) -> Row:
 
 def steepest(rows: list[Row]) -> str:
     powers = [math.log(b.vertices / a.vertices) / math.log(a.thinness / b.thinness) for a, b in zip(rows, rows[1:])
-              if a.vertices and b.vertices]  # 0: a failed run, or constrained tetrahedra alone
+              if a.vertices and b.vertices]  # 0: failed or nothing inserted
     return f"{max(max(powers), 0):.1f}" if powers else ""
 
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Measures the speedup by several threads, for each stage of whole runs. Runs with one thread use each of the cores in
-turn, because cores are not equally fast; runs with several threads use as many cores. Runs alternate over some
-rounds, and memory is made ready before each (processes.fetch_memory). Prints a Markdown table of medians of wall
-seconds and of speedups."""
+turn, because cores are not equally fast; a run with several threads uses as many cores as threads. Each of some rounds
+has one run of every kind, and memory is made ready before each run (processes.fetch_memory). Prints a Markdown table of
+medians of wall seconds and of speedups."""
 
 from __future__ import annotations
 

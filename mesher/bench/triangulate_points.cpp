@@ -1,5 +1,5 @@
-// Measures the time that CGAL takes for the bare Delaunay triangulation of a mesh's vertices. It is the
-// yardstick for refinement, which also has to find those vertices.
+// Measures the CPU time that CGAL takes for the Delaunay triangulation of a mesh's vertices. Refinement,
+// which also has to find these vertices, is compared with this time.
 #include <CGAL/Delaunay_triangulation_3.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 

@@ -1,4 +1,4 @@
-"""Finds the size that makes a wanted number of tets, and remembers it between runs."""
+"""Finds the size at which a mesher makes a wanted number of tets, and keeps it for later runs."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ import math
 import tempfile
 from pathlib import Path
 
-tolerance = 0.1     # relative difference of the number of tets above which results are marked
-near_enough = 0.03  # relative difference that ends the search
+tolerance = 0.1     # largest relative difference from the wanted number of tets for which tables have no mark
+near_enough = 0.03  # relative difference from the wanted number of tets that ends the search
 trials = 8
 
 
 class SizeCache:
-    """A JSON file in the folder for temporary files, with sizes and the signatures of the meshers for which they were
-    found. If a mesher has changed, its old size is still a good first guess."""
+    """A JSON file in the folder for temporary files that keeps sizes, and with each size the signature of its mesher.
+    If the mesher has changed since, the old size is still a good first guess."""
 
     def __init__(self) -> None:
         self.folder = Path(tempfile.gettempdir()) / "collarmesh_bench"
@@ -31,8 +31,8 @@ class SizeCache:
 
 
 def size_for(mesher, surface, target: int, folder: Path, cache: SizeCache) -> float:
-    """Returns the size at which `mesher` makes approximately the wanted number of tets: of the sizes tried, the one
-    with the nearest number. It may be far from the wanted one if the number of tets jumps over it or never gets that
+    """Returns the size at which `mesher` makes approximately `target` tets: the best one of the sizes that were tried.
+    The number of tets at this size may be far from `target` if it jumps from below to above `target` or never gets so
     low. Raises ProgramFailed if the mesher does."""
     key = f"{mesher.name} {surface.name} {len(surface.polygons)} {target} {near_enough}"
     size, signature = cache.get(key) or ((surface.volume / (0.12 * target)) ** (1 / 3), None)
@@ -50,9 +50,9 @@ def size_for(mesher, surface, target: int, folder: Path, cache: SizeCache) -> fl
 
 
 def _next_trial(found: list[tuple[float, float]]) -> float:
-    """Returns the logarithm of the next size to try: by the secant of the last two trials, with a limited slope, or as
-    if tets ~ size^-3 after the first one. Bisects if that is not between the nearest sizes with too many and with too
-    few tets."""
+    """Returns the logarithm of the next size to try. After the first trial, assumes tets ~ size^-3; later uses the
+    secant of the last two trials, with a limited slope. If the result is not between the nearest sizes with too many
+    and with too few tets, returns the middle of these."""
     at, miss = found[-1]
     slope = -3.0
     if len(found) > 1 and found[-2][0] != at:

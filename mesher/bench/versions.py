@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Compares the refinement of this version with an older one's, without certificate and output (`refine`), at equal
-numbers of tetrahedra, on the box and on parts of a corpus. The two programs run in turn, pinned to one core; a first
-round is not counted. Prints a Markdown table of medians of CPU time per tet."""
+"""Compares the refinement of this version with that of an older one (program `refine`, which makes no certificate and
+no output), at equal numbers of tetrahedra, on the box and on parts of a corpus. The two programs run in turn, pinned to
+one core; the first round does not count. Prints a Markdown table of medians of CPU time per tet."""
 
 from __future__ import annotations
 

@@ -2,10 +2,10 @@
 """Compares whole runs of collarmesh and of Gmsh HXT with its optimization, with one thread and with two, at equal
 numbers of tetrahedra.
 
-The programs run in turn, some rounds, on as many cores as they may use threads; before each run memory is
+The programs run in turn for some rounds, on as many cores as they may use threads; before each run memory is
 made ready (processes.fetch_memory). Ours refines, coarsens, improves, checks and writes; HXT meshes the
-surface, refines, optimizes and writes. `volume` is the time from the input's surface to the mesh: our stages
-refine, coarsen and improve, and HXT's "meshing 3D". Prints Markdown tables of medians of wall seconds.
+surface, refines, optimizes and writes. "volume" is the time for our stages refine, coarsen and improve, and for
+HXT's "meshing 3D", which starts from its surface mesh. Prints Markdown tables of medians of wall seconds.
 """
 
 from __future__ import annotations
@@ -40,8 +40,8 @@ class Runs:
 
 
 def measure(options, makers, surface: Surface, target: int, cache: SizeCache) -> dict[str, Runs]:
-    """Measures each mesher at a number of tets: searches the sizes, then runs the meshers in turn. `makers`: functions
-    that return a mesher with a number of threads."""
+    """Measures each mesher at a number of tets: searches the sizes, then runs the meshers in turn. Each of `makers`
+    returns a mesher that uses the given number of threads."""
     results, sizes, folders = {}, {}, {}
     for make in makers:
         mesher = make(1)

@@ -1,8 +1,8 @@
-// Wraps any surface with CGAL's Alpha_wrap_3 and meshes the wrap with its Mesh_3, the peer in the benchmark
-// of real parts: wrap_mesh INPUT.off OUT.mesh
+// Wraps any surface with CGAL's Alpha_wrap_3 and meshes the wrap with CGAL's Mesh_3, as a peer of collarmesh
+// in real_parts.py: wrap_mesh INPUT.off OUT.mesh
 //
-// The wrap closes gaps and holes that are narrower than about 1/50 of the diagonal, and lies 1/600 of the
-// diagonal outside the input. The target edge length is 1/20 of the diagonal.
+// The wrap closes gaps and holes that are narrower than about 1/50 of the input's diagonal, and lies 1/600 of
+// the diagonal outside the input. The target edge length is 1/20 of the diagonal.
 #include <CGAL/Bbox_3.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/IO/File_medit.h>
@@ -37,7 +37,7 @@ struct Soup {
   std::vector<std::array<std::size_t, 3>> triangles;
 };
 
-// Reads polygons as triangles; none if the file cannot be read.
+// Reads polygons and cuts them into triangles. Returns an empty soup if the file cannot be read.
 Soup read_triangles(const char* file) {
   Soup soup;
   std::vector<std::vector<std::size_t>> polygons;
@@ -56,8 +56,9 @@ double diagonal_of(const std::vector<Point>& points) {
 Complex mesh_wrap(const Polyhedron& wrap, double size) {
   Domain domain(wrap);
   namespace parameters = CGAL::parameters;
-  // Bounds on circumradii: somewhat above those of a regular triangle and tetrahedron with edges `size`. No
-  // features are protected, because a wrap's edges are chamfered by its offset.
+  // facet_size and cell_size bound circumradii. These bounds are somewhat larger than the circumradii of a
+  // regular triangle and of a regular tetrahedron with edges of length `size`. No features are protected,
+  // because the offset chamfers the edges of the wrap.
   const Criteria criteria(parameters::facet_angle = 25, parameters::facet_size = 0.7 * size,
                           parameters::facet_distance = size / 20, parameters::cell_radius_edge_ratio = 2,
                           parameters::cell_size = 0.79 * size);

@@ -79,14 +79,14 @@ void add_mesh_options(CLI::App& app, MeshArguments& a) {
       ->type_name("FILE");
   app.add_option(
          "--batch", a.batch,
-         "In place of --output: each INPUT is a part of its own, and its mesh goes into this folder, with "
-         "the name of the part; --report json and --report html put reports beside it")
+         "In place of --output: mesh each INPUT by itself, and write its mesh, under the name of the input, "
+         "into this folder; --report json and --report html write a report beside each mesh")
       ->type_name("FOLDER");
   add_output_format(app, a.output_format, "");
   add_options(app, Option::mesh, a);
 }
 
-/// Adds the file arguments of commands that make one file from several.
+/// Adds the arguments for the input files and the output file of `convert` and `repair`.
 void add_conversion_files(CLI::App& app, MeshArguments& a, const std::string& inputs) {
   app.add_option("IN", a.inputs, inputs + "; -: standard input")->required()->type_name("FILE");
   app.add_option("-o,--output", a.output, "The file to write; -: standard output")
@@ -100,7 +100,7 @@ void add_conversion_files(CLI::App& app, MeshArguments& a, const std::string& in
 CLI::App* add_convert_command(CLI::App& app, MeshArguments& a) {
   CLI::App* convert = app.add_subcommand(
       "convert",
-      "Convert surfaces, complexes and meshes into each other; a surface into a mesh by meshing it");
+      "Convert surfaces, complexes and meshes into each other; to become a mesh, a surface is meshed");
   add_conversion_files(*convert, a, "Surfaces and complexes, joined into one, or one mesh");
   add_options(*convert, Option::convert, a);
   return convert;
@@ -116,8 +116,8 @@ CLI::App* add_remesh_command(CLI::App& app, RemeshArguments& a) {
       ->type_name("FILE");
   remesh
       ->add_option("--against", a.against,
-                   "The input that the mesh was made from, one or several files; the result follows it, and "
-                   "on CAD shapes their exact faces")
+                   "The input that the mesh was made from, one or several files; the result follows this "
+                   "input, and the exact faces of CAD files")
       ->type_name("FILE");
   remesh->add_option("-o,--output", a.output, "The mesh to write: " + list(io::written_tet_mesh_formats()))
       ->type_name("FILE");
@@ -144,9 +144,10 @@ CLI::App* add_info_command(CLI::App& app, InfoArguments& a) {
   info->add_option("INPUT", a.inputs, "Files of one complex, or one mesh")->required()->type_name("FILE");
   info->add_flag("--json", a.json, "Print JSON");
   CLI::Option* const predict =
-      info->add_option("--predict", a.predicted_sizes,
-                       "Estimate the tetrahedra and seconds that meshes of these sizes take, without making "
-                       "them; 0: the default size")
+      info->add_option(
+              "--predict", a.predicted_sizes,
+              "Estimate how many tetrahedra meshes of these sizes have and how many seconds they take, "
+              "without making the meshes; 0: the default size")
           ->delimiter(',')
           ->allow_extra_args(false)
           ->check(number_in(0, 1e300, "a length >= 0 in input units"))
@@ -182,8 +183,8 @@ bool output_is_among(const std::vector<std::string>& formats, const MeshArgument
   return std::find(formats.begin(), formats.end(), format_of_output(a)) != formats.end();
 }
 
-/// Rejects partitions for formats that do not keep them, and options that need partitions if there are none.
-/// `from_mesh`: the input is a mesh, which may be partitioned already.
+/// Rejects partitions if the output format cannot store them, and options that need partitions if the mesh
+/// has none. `from_mesh`: the input is a mesh, which may be partitioned already.
 void check_partitions(const MeshArguments& a, bool from_mesh) {
   if (a.partitions > 0 && !output_is_among(io::formats_with_partitions(), a))
     reject("--partitions", "{} has no place for partitions; use {}", format_of_output(a),

@@ -11,7 +11,7 @@
 
 namespace collarmesh::cli {
 
-using namespace command;  // the code that other programs share
+using namespace command;  // the code shared with collarmesh-mpi
 using process::ExitCode;
 
 /// The arguments of `collarmesh check MESH --against INPUT...`.
@@ -24,7 +24,7 @@ struct CheckArguments : RunOptions {
 /// The arguments of `collarmesh info INPUT...`.
 struct InfoArguments : RunOptions {
   std::vector<std::string> inputs;
-  std::vector<double> predicted_sizes;  ///< target edge lengths to predict for; 0: `mesh.size`, or its
+  std::vector<double> predicted_sizes;  ///< target edge lengths of meshes to predict; 0: `mesh.size`, or its
                                         ///< default; empty: no prediction
   bool json = false;
 };
@@ -32,7 +32,7 @@ struct InfoArguments : RunOptions {
 /// The arguments of `collarmesh convert IN... -o OUT`: a surface is meshed if OUT has a format of meshes. "-"
 /// is standard input or standard output.
 struct ConvertArguments : MeshArguments {
-  std::vector<std::string> meshing_options;  ///< given options that only meshing uses
+  std::vector<std::string> meshing_options;  ///< names of given options that only meshing uses
   bool repairs = false;  ///< whether to repair surfaces that are converted to surfaces: --repair is given
                          ///< with a value other than none
 };
@@ -45,7 +45,7 @@ struct RepairArguments : MeshArguments {
 
 /// The arguments of `collarmesh remesh MESH -o OUT`.
 struct RemeshArguments : MeshArguments {
-  std::vector<std::string> against;  ///< the input that the mesh was made from; empty: the mesh's surface
+  std::vector<std::string> against;  ///< files that the mesh was made from; empty: use the mesh's surface
 };
 
 using Arguments = std::variant<MeshArguments, CheckArguments, InfoArguments, ConvertArguments,

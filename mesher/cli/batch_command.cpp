@@ -42,7 +42,7 @@ class TemporaryFolder {
   std::string path_;
 };
 
-/// A part, and the contents of its report.
+/// The outcome of meshing one part, with the contents of its report.
 struct Result {
   std::string input;
   ExitCode code = ExitCode::cancelled;

@@ -29,8 +29,8 @@ ExitCode repair_command(process::Process& process, const RepairArguments& argume
 /// codes of `mesh_command`.
 ExitCode convert_command(process::Process& process, const ConvertArguments& arguments);
 
-/// Makes a mesh and writes it, with reports, and prints a summary: the common part of all commands that make
-/// a mesh.
+/// Makes a mesh with `make`, writes it and its reports, and prints a summary: the common part of all commands
+/// that make a mesh.
 ExitCode make_and_write(process::Process& process, const MeshArguments& arguments,
                         const std::function<void(Stages&, report::MeshRun&)>& make);
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <string_view>
 
-/// Completions for shells, made from the table of options: subcommands, options, words that options take,
-/// files.
+/// Completion scripts for shells. They complete subcommands, options, the words that an option accepts, and
+/// file names.
 namespace collarmesh::cli {
 
 /// Returns the completion script for the shell bash, zsh or fish; empty for any other.

@@ -89,7 +89,7 @@ void convert_mesh(process::Process& process, const MeshArguments& a, TetMesh& me
                     report::losses_text(report::lost_by(io::format_of(a.output, a.output_format), mesh)));
 }
 
-/// Repairs the soups so that they form a complex that encloses something; throws PlcError if that is
+/// Repairs the input so that it forms a complex with at least one region. Throws PlcError if that is
 /// impossible.
 void repair(process::Process& process, const MeshArguments& a, files::ComplexInput& input) {
   const Plc plc = input.build(a.complex, a.repair);

@@ -76,8 +76,8 @@ std::string failure_page(const Json& json) {
       xml_text(json["message"].get<std::string>()), xml_text(report::json_text(json, 1)));
 }
 
-/// Writes a report. If the path is a link, replaces the file that it names. Replaces regular files only:
-/// another kind of file may be the reason why the command failed.
+/// Writes a report. If the path is a symbolic link, writes the file that the link points to. Writes nothing
+/// if another kind of file than a regular one is there: it may be the reason why the command failed.
 void write(const std::string& path, const Json& json) {
   namespace fs = std::filesystem;
   std::error_code error;

@@ -5,8 +5,8 @@
 
 namespace collarmesh::cli {
 
-/// If this command makes a mesh, lets a later failure write the requested reports: the error, its stage, and
-/// the progress so far.
+/// Makes a later failure of this command write the reports that the command requests, if any: the error, the
+/// stage in which it occurred, and the progress until then.
 void report_failures_of(process::Process& process, const Arguments& arguments);
 
 }  // namespace collarmesh::cli

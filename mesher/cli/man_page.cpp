@@ -13,8 +13,8 @@ namespace collarmesh::cli {
 
 namespace {
 
-/// Escapes text for roff, so that backslashes, hyphens and dots at the beginning of a line are printed as
-/// they are.
+/// Escapes backslashes and hyphens for roff, and dots and apostrophes at the beginning of a line, so that
+/// they are printed as they are.
 std::string roff(std::string_view text) {
   std::string result;
   for (const char c : text) {

@@ -85,7 +85,7 @@ void write_files(process::Process& process, const MeshArguments& arguments, Stag
   process.files.commit(files);
 }
 
-/// Checks the trace folder before long work starts.
+/// Creates the trace folder and checks that it can be written to, before long work starts.
 void require_trace_folder(process::Process& process, const std::string& folder) {
   if (folder.empty()) return;
   std::error_code error;

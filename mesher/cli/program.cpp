@@ -56,7 +56,7 @@ void limit_threads(const Arguments& arguments) {
   static_cast<void>(limit);
 }
 
-/// Runs a command, in a separate process if it reads CAD files, which may crash.
+/// Runs a command. If it reads CAD files, runs it in a separate process, because OpenCASCADE may crash.
 ExitCode execute(process::Process& process, const Arguments& arguments) {
   report_failures_of(process, arguments);
   const auto command = [&] {

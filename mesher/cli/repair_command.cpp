@@ -25,9 +25,9 @@ std::string read_again(const std::string& path, const RepairArguments& a) {
     build_plc(soups, a.complex);
   } catch (const PlcError& error) {
     return fmt::format(
-        "warning: the written file is not a valid complex, because the format does not keep all data: {} "
-        "Formats that keep more are .off, .obj "
-        "and .ply (64 bits), and .poly (regions).\n",
+        "warning: the written file is not a valid complex, because its format does not store all data: {} "
+        "Write .off, .obj or .ply, which store all digits of coordinates, or .poly, which also stores "
+        "regions.\n",
         error.what());
   }
   return {};

@@ -25,7 +25,7 @@ PipelineOptions pipeline_options(process::Process& process, const MeshArguments&
   return options;
 }
 
-/// Records the stage, for the message when the time is up.
+/// Records how far refinement came, for the message when time, memory or vertices are used up.
 void note_where_it_stopped(process::Process& process, const MeshResult& result) {
   const MeshStatistics& reached = result.statistics;
   const Point& p = result.where;
@@ -37,7 +37,7 @@ void note_where_it_stopped(process::Process& process, const MeshResult& result) 
           p.z));
 }
 
-/// A builder of complexes from the input files. Prints the warnings and repairs of each one.
+/// A builder of complexes from the input files. Prints the warnings and repairs of each complex.
 class InputSource : public ComplexSource {
  public:
   /// Keeps references to all arguments.
@@ -100,7 +100,7 @@ class InputSource : public ComplexSource {
   RepairOptions built_with_;
   std::string told_of_options_;                   // warnings about options, printed once even if several
                                                   // meshes are tried
-  std::shared_ptr<SizeFieldUse> size_field_use_;  // use in the mesh tried last
+  std::shared_ptr<SizeFieldUse> size_field_use_;  // how the mesh tried last used the size field
 };
 
 }  // namespace
@@ -137,7 +137,7 @@ RepairOptions make_mesh(process::Process& process, const MeshArguments& argument
     if (!input.has_cad() || (report.phase != "project" && report.phase != "second order"))
       projecting.reset();
     else if (!projecting)
-      projecting.emplace(process.supervisor, "finding the nearest points of its faces and edges",
+      projecting.emplace(process.supervisor, "finding the nearest points of the shape's faces and edges",
                          input.cad_names());
     stages.update(report);
     return true;

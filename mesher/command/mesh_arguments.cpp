@@ -55,7 +55,7 @@ std::vector<std::string> all_inputs(const MeshArguments& a) {
   return inputs;
 }
 
-/// Checks an output file other than the mesh: it must replace none of the mesh's or input's files.
+/// Rejects an output file other than the mesh if it would replace a file of the mesh or of the input.
 void check_second_output(const char* option, const std::string& file, const MeshArguments& a) {
   if (file.empty()) return;
   if (files::may_write(a.output, a.output_format, file))

@@ -20,7 +20,7 @@ template <class... Values>
 /// numbers in the error.
 CLI::Validator number_in(double low, double high, const std::string& name);
 
-/// Returns a check for these extensions; it turns "STL" into ".stl".
+/// Returns a check that a value is one of these extensions. It first turns "STL" into ".stl".
 CLI::Validator format_name(const std::vector<std::string>& extensions);
 
 /// Joins extensions: ".off .stl"

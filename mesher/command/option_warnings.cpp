@@ -15,7 +15,7 @@ namespace {
 // The lowest bound on the radius-edge ratio for which termination is proved in the plane (doc/theory.md). On
 // test shapes refinement also ended with lower bounds, down to 1.1, but never with 1 (doc/limits.md).
 constexpr double proved_radius_edge = std::numbers::sqrt2;
-// The lowest bounds on collar angles that meshes of test shapes kept: without coarsening
+// The lowest bounds on collar angles, in degrees, that meshes of test shapes kept: without coarsening
 // (doc/architecture/collars.md), and after it (doc/architecture/coarsening.md).
 constexpr double reached_collar_angle = 130, reached_coarsened = 120;
 // Distances below or tolerances above these, relative to the diagonal, get a warning.
@@ -59,9 +59,9 @@ std::vector<std::string> option_warnings(const MeshArguments& a, const Plc& plc)
   if (a.mesh.bounds.distance > 0 && a.mesh.bounds.distance < small_distance * diagonal &&
       is_smooth_anywhere(plc))
     warnings.push_back(
-        fmt::format("--distance {:.6g} is {:.2g} of the diagonal: on smooth faces and curves the number of "
-                    "elements grows with its inverse; a larger distance costs less, as does --feature-angle "
-                    "0, which keeps the facets as they are.",
+        fmt::format("--distance {:.6g} is {:.2g} of the diagonal: so small a distance takes many elements "
+                    "on smooth faces and curves; choose a larger one, or --feature-angle 0, which keeps "
+                    "the facets as they are.",
                     a.mesh.bounds.distance, a.mesh.bounds.distance / diagonal));
   if (a.complex.planar_tolerance > large_planar_tolerance)
     warnings.push_back(fmt::format(

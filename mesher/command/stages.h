@@ -9,7 +9,7 @@
 
 namespace collarmesh::command {
 
-/// The stages of a command, both in the display and in the timing.
+/// A reporter of the stages of a command, to the progress display and to the table of times.
 class Stages {
  public:
   Stages(process::Process& process, const RunOptions& options, report::StageTimes& times)

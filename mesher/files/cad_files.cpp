@@ -57,7 +57,7 @@ struct CadFiles::File {
   Index first_soup, soup_count;
   mutable std::optional<brep::CadMeasures> measures = {};  // measures of these soups, computed on first use
 
-  /// Replaces the soups' triangles by finer ones.
+  /// Replaces the triangles of this file's soups by those that `options` give.
   void cut_again(const brep::TessellationOptions& options, std::vector<PolygonSoup>& soups) {
     std::vector<PolygonSoup> own;
     ThreadLimit(threads).run([&] { own = model->tessellate(options); });
@@ -83,7 +83,7 @@ void CadFiles::read(const std::string& path, std::string_view format, const CadR
   const brep::Overlap overlap =
       reading.overlap == SolidOverlap::region ? brep::Overlap::region : brep::Overlap::first;
   const double patience = patience_with(path);
-  std::shared_ptr<void> work = guarded("reading it and finding its solids", path, patience);
+  std::shared_ptr<void> work = guarded("reading the file and finding its solids", path, patience);
   std::unique_ptr<brep::CadModel> model;
   ThreadLimit limit(reading.threads);  // also limits OpenCASCADE, which uses TBB's threads
   limit.run([&] { model = read_by_module(path, format, {.overlap = overlap}); });

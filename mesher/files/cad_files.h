@@ -29,11 +29,11 @@ struct CadReading {
 };
 
 /// Tells the process's supervisor which work of OpenCASCADE on a file begins, and how many seconds it may
-/// take (0: any time). The work ends when the returned object is destroyed.
+/// take (0: no limit). The work ends when the returned object is destroyed.
 using CadGuard =
     std::function<std::shared_ptr<void>(std::string_view doing, std::string_view file, double seconds)>;
 
-/// The CAD files among the inputs. The first one loads the module with OpenCASCADE.
+/// The CAD files among the inputs. Reading the first one loads the module with OpenCASCADE.
 class CadFiles {
  public:
   explicit CadFiles(CadGuard guard = {});
@@ -63,16 +63,16 @@ class CadFiles {
   void tessellate(double finer, const std::set<std::pair<Index, Tag>>& faces,
                   std::vector<PolygonSoup>& soups);
 
-  /// Returns the nearest point of EdgeN (dimension 1) or FaceN (2) of the file that a soup came from; nothing
-  /// for soups of other files.
+  /// Returns the nearest point of EdgeN (dimension 1) or FaceN (2), where N is `number`, of the file that a
+  /// soup came from; nothing if that is no CAD file.
   std::optional<Point> nearest(Index soup, unsigned dimension, Tag number, const Point& p) const;
 
-  /// Exact lengths, areas and volumes of the shape in the file that a soup came from, and the first soup of
-  /// that file; nothing for soups of other files.
+  /// Exact lengths, areas and volumes of the shape in a CAD file, and the file's first soup.
   struct Measured {
     const brep::CadMeasures& measures;
     Index first_soup;
   };
+  /// Returns the measures of the file that a soup came from; nothing if that is no CAD file.
   std::optional<Measured> measures(Index soup) const;
 
   /// Returns the faces nearest to a place, in the file whose faces are nearest: "Face3 and Face7 of
@@ -83,7 +83,7 @@ class CadFiles {
   /// Returns faces that were merged with others: pairs of the number that is gone and the number that
   /// replaces it.
   std::vector<std::pair<Tag, Tag>> replaced_faces() const;
-  /// Returns whether a soup is that of a CAD file.
+  /// Returns whether a soup came from a CAD file.
   bool has(Index soup) const { return file_of(soup) != nullptr; }
   /// Returns false if solids that touch or overlap could not be fused. Their soups then intersect, even with
   /// fine triangles.

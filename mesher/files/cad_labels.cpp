@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t longest_name = 60;  // in bytes
 
-/// Returns the length of the UTF-8 character at the front of a text, 0 if there is none.
+/// Returns the length in bytes of the UTF-8 character at the front of a text, 0 if it is not valid.
 std::size_t character_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const std::size_t length = byte(0) < 0x80   ? 1
@@ -38,7 +38,8 @@ std::size_t character_length(std::string_view text) {
   return valid ? length : 0;
 }
 
-/// Replaces invalid text by `_` and removes blanks around it.
+/// Replaces invalid bytes, control characters and double quotes by `_`, cuts the text off at `longest_name`,
+/// and removes blanks around the text.
 std::string clean(std::string_view text) {
   std::string result;
   while (!text.empty()) {

@@ -6,8 +6,8 @@
 
 namespace collarmesh::files {
 
-// Writes the format of OpenFOAM's user guide, "Basic input/output file format" and "Decomposition of mesh and
-// initial field data".
+// Writes the format described in OpenFOAM's user guide, "Basic input/output file format" and "Decomposition
+// of mesh and initial field data".
 void write_cell_decomposition(const std::string& path, const TetMesh& mesh) {
   io::FileWriter out(path);
   out << std::string_view(

@@ -58,8 +58,8 @@ CheckReport check_as_built(const TetMesh& mesh, ComplexInput& input, const RunOp
   return report;
 }
 
-/// Checks the mesh against complexes that stronger repairs of the input make. Takes the report and the repair
-/// of the first complex that the mesh fits; keeps the given ones if it fits none.
+/// Checks the mesh against complexes that stronger repairs of the input make. Replaces `report` and `repair`
+/// by those of the first complex against which the mesh passes; leaves them as they are if there is none.
 void check_against_further(const TetMesh& mesh, ComplexInput& input, const RunOptions& options,
                            const Execution& execution, CheckReport& report, RepairReport& repair) {
   std::vector<RepairOptions> all = further_repairs(options.repair, repair);

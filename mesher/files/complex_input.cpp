@@ -30,7 +30,7 @@ namespace {
 constexpr double share_of_triangles = 0.1;  // permitted distance of the first triangles from the shape,
                                             // relative to that of the mesh
 constexpr double finest = 4;  // triangles of CAD faces get at most this many times finer than the first ones
-constexpr double finest_for_nodes = 8;  // the same where mid-edge nodes would be too far from them
+constexpr double finest_for_nodes = 8;  // this limit if mid-edge nodes are too far from coarser triangles
 
 bool may_be_too_coarse(const PlcError& error) {
   return std::all_of(error.faults.begin(), error.faults.end(), [](const PlcFault& fault) {
@@ -68,7 +68,7 @@ std::string advice(const PlcError& error, const RepairOptions& options, bool of_
                              options.tolerance);
   const std::string wider = fmt::format("a larger --repair-tolerance than {:.3g}", options.tolerance);
   switch (options.mode) {
-    case RepairMode::off: return " Without --repair none the input would be repaired as far as possible.";
+    case RepairMode::off: return " Leave out --repair none to repair the input as far as possible.";
     case RepairMode::wrap:
       return fmt::format(
           " A closed surface around everything failed, too; {} or another --wrap-offset may help.", wider);
@@ -120,7 +120,7 @@ ComplexInput::ComplexInput(const std::vector<std::string>& paths, InputReading r
     : reading_(std::move(reading)), cad_(reading_.guard) {
   const CadReading cad{[&](double diagonal) { return share_of_triangles * reading_.distance(diagonal); },
                        reading_.overlap, reading_.threads};
-  Tag largest_named = 0;  // largest tag of named files so far; their tags must differ
+  Tag largest_named = 0;  // largest tag so far in files with names; tags of such files must differ
   for (const std::string& path : paths) {
     reading_.stop();
     const std::string file = existing_file(path);
@@ -161,7 +161,7 @@ void ComplexInput::remember(const PlcOptions& options, const RepairOptions& repa
   if (!built_.repaired.repaired || built_.repaired.cancelled || some_finer ||
       plc.triangles.size() > most_triangles)
     return;
-  // Drop the oldest one but the first, because later tries return to the first one.
+  // Keep the first one, to which later tries return, and drop the oldest of the others.
   if (known_.size() == most) known_.erase(known_.begin() + 1);
   known_.push_back({options, repair, finer_, plc, built_});
 }
@@ -207,7 +207,7 @@ Plc ComplexInput::without_small_features(Plc plc, const PlcOptions& options, con
                                       soups_, options, kept, watched()));
 }
 
-/// Adds the pairs of CAD faces that were merged where solids touch to the complex's pairs of replaced tags.
+/// Appends to the complex's replaced tags the pairs of CAD faces that were merged because solids touch.
 void ComplexInput::add_replaced_faces(Plc& plc) const {
   std::vector<std::pair<Tag, Tag>>& all = plc.cleanup.replaced_tags;
   std::ranges::copy(cad_.replaced_faces(), std::back_inserter(all));
@@ -301,13 +301,13 @@ Plc ComplexInput::build_finer(const PlcOptions& options, const RepairOptions& re
 }
 
 /// Returns the complex with finer triangles on the faces whose triangles are too coarse for the mesh. It must
-/// be valid without repair, have as many regions and hardly worse volumes. Otherwise all faces get finer
-/// triangles, because a wall becomes thinner if only one of its sides gets them. If that fails, too, returns
-/// `plc`. Mid-edge nodes lie on the exact shape, so with elements of second order triangles must be nearer to
-/// it than the tolerance. Faces that are `fine` already have the finest triangles.
+/// be valid without repair, with as many regions as `plc` and hardly worse volumes. If it is not, tries finer
+/// triangles on all faces, because a wall becomes thinner if only one of its sides gets them. If that fails,
+/// too, returns `plc`. With elements of second order, whose mid-edge nodes lie on the exact shape, triangles
+/// must be nearer to the shape than the tolerance. The faces in `fine` have the finest triangles already.
 Plc ComplexInput::resolved(Plc plc, const std::set<SoupFace>& fine, const PlcOptions& options,
                            const RepairOptions& repair) {
-  constexpr double margin = 1.5, little = 2e-3, allowed_for_nodes = 4;  // in units of `by`
+  constexpr double margin = 1.5, little = 2e-3, allowed_for_nodes = 4;  // the tolerance, in units of `by`
   if (!reading_.tolerance || built_.repaired.repaired) return plc;
   std::set<SoupFace> faces = fine;
   double finer = fine.empty() ? 1 : finest;
@@ -395,7 +395,7 @@ ShapeMeasures ComplexInput::exact_measures(const Plc& plc) const {
 ExactGeometry ComplexInput::exact_geometry(const Plc& plc) const {
   return [this, &plc, files = files_of_curves(plc, soups(), built_.curve_numbers)](
              unsigned dimension, Index feature, const Point& p) -> std::optional<Point> {
-    if (built_.repaired.wrapped) return std::nullopt;  // its tags are not numbers of faces
+    if (built_.repaired.wrapped) return std::nullopt;  // a wrap's tags are not numbers of faces
     const Index file = dimension == 2 ? plc.patches[feature].file : files[feature];
     if (file == none) return std::nullopt;
     const Tag number = dimension == 2 ? built_.patch_numbers[feature] : built_.curve_numbers[feature];

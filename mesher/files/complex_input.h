@@ -25,8 +25,8 @@ namespace collarmesh::files {
 /// Options for reading the files of one complex.
 struct InputReading {
   std::string format;  ///< overrides the files' extensions; empty: by extension
-  /// Returns the surface distance tolerance, absolute, given the diagonal. The first triangles of CAD shapes
-  /// are at most a tenth of it from the shape.
+  /// Returns the surface distance tolerance, absolute, given the diagonal of the bounding box. The first
+  /// triangles of a CAD shape are at most a tenth of this tolerance from the shape.
   std::function<double(double diagonal)> distance = [](double diagonal) {
     return default_distance(0, diagonal);
   };
@@ -47,9 +47,9 @@ struct InputReading {
 /// Returns the settings for reading that the options of a run give.
 InputReading reading_of(const RunOptions& options, const std::string& format = {});
 
-/// Returns these settings for input that will be meshed: triangles of CAD shapes are as fine as the mesh's
-/// sizes ask for and, for meshes of solids, fine enough to keep volumes. The result refers to `options`,
-/// which must outlive it.
+/// Returns the settings of `reading_of`, changed for input that will be meshed: triangles of CAD shapes are
+/// as fine as the mesh's sizes ask for and, for meshes of solids, fine enough to keep volumes. The result
+/// refers to `options`, which must outlive it.
 InputReading reading_for_mesh(const RunOptions& options, const std::string& format = {});
 
 /// The files of one complex: surfaces, complexes and CAD shapes, which are triangulated here.
@@ -66,7 +66,7 @@ class ComplexInput {
     first_.reset();
   }
 
-  /// Returns the soups from which the last complex was built or, before the first one, the soups that were
+  /// Returns the soups from which the last complex was built; if none was built yet, the soups that were
   /// read.
   const std::vector<PolygonSoup>& soups() const { return built_.soups.empty() ? soups_ : built_.soups; }
   bool has_cad() const { return !cad_.empty(); }
@@ -76,8 +76,8 @@ class ComplexInput {
   std::vector<std::string> notes(unsigned dimension = 3) const { return cad_.notes(dimension == 3); }
 
   /// Builds the complex, of repaired facets if necessary. If triangles of CAD faces intersect, tries finer
-  /// ones first. Remembers the last few repaired complexes, so that to build one of them again costs little.
-  /// Throws PlcError; the messages name CAD faces.
+  /// ones before a repair. Remembers the last few repaired complexes, so that to build one of them again
+  /// costs little. Throws PlcError; the messages name CAD faces.
   Plc build(const PlcOptions& options, const RepairOptions& repair = {});
   /// Returns the colours that a CAD file gives to the tags of the complex built last.
   TagColours colours() const;
@@ -133,8 +133,8 @@ class ComplexInput {
   InputReading reading_;
   std::vector<PolygonSoup> soups_;  // the soups as they were read
   CadFiles cad_;
-  double finer_ = 1;  // factor relative to the first triangles of CAD shapes; 0 if only some faces have finer
-                      // ones
+  double finer_ = 1;  // how many times finer the triangles of CAD shapes are than the first ones; 0 if only
+                      // those of some faces are finer
   Built built_;
   std::vector<Known> known_;  // the first and the last few repaired complexes
 

@@ -8,7 +8,8 @@
 
 namespace collarmesh::files {
 
-/// Returns the Levenshtein distance: the number of letters to change, insert or remove.
+/// Returns the Levenshtein distance: the least number of letters to change, insert or remove that turns `a`
+/// into `b`.
 inline std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), 0);

@@ -19,7 +19,8 @@ namespace {
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 /// Corrects the size of a feature of the complex by the difference between the exact CAD measure and that of
-/// the tessellation. Returns NaN if the measure belongs to another feature.
+/// the tessellation. Returns NaN if the size differs too much from that of the tessellation to be the same
+/// feature's.
 double corrected(double in_complex, const brep::CadMeasure& measure) {
   constexpr double share = 1e-4;  // largest relative change of a feature that still counts as the same
   if (!(std::fabs(in_complex - measure.cut) <= share * measure.cut)) return unknown;
@@ -28,7 +29,7 @@ double corrected(double in_complex, const brep::CadMeasure& measure) {
 
 /// An edge or a face of a file.
 struct Source {
-  Index file;  // the first soup that has it
+  Index file;  // given by its first soup
   Tag number;
   friend auto operator<=>(const Source&, const Source&) = default;  // NOLINT(modernize-use-nullptr)
 };
@@ -48,7 +49,7 @@ class Origins {
     group.measure = &found->second;
   }
 
-  /// Returns the size of each feature, corrected; NaN where no exact measure is known.
+  /// Returns the size of each feature, corrected; NaN for features without a known exact measure.
   std::vector<double> corrected_sizes() {
     for (const auto& [source, group] : groups_) {
       const double stretch = corrected(group.size, *group.measure) / group.size;
@@ -163,7 +164,8 @@ class Measures {
     return cad ? cad->measures.volumes[soup - cad->first_soup] : std::nullopt;
   }
 
-  /// Returns the volume of a solid minus those of the solids inside it, whose faces also bound its region.
+  /// Returns the volume of the solid `own` minus those of the solids inside it, whose faces also bound the
+  /// region.
   std::optional<brep::CadMeasure> solid_without_others(Index own, const std::vector<Index>& boundary) const {
     std::optional<brep::CadMeasure> result = solid(own);
     if (!result) return result;

@@ -21,8 +21,9 @@ std::vector<Index> files_of_curves(const Plc& plc, const std::vector<PolygonSoup
                                    const std::vector<Tag>& numbers);
 
 /// Returns lengths, areas and volumes of the CAD shapes behind a complex: the measures of its features,
-/// corrected by the difference between shape and tessellation. NaN for features that are only a part of an
-/// edge or face, and for regions other than a solid minus the solids inside it.
+/// corrected by the difference between shape and tessellation. NaN for features of
+/// an edge or face that the complex has only in part, and for regions other than a solid minus the solids
+/// inside it.
 ShapeMeasures measures_behind(const Plc& plc, const FeatureSources& sources, const CadFiles& cad);
 
 }  // namespace collarmesh::files

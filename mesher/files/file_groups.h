@@ -6,15 +6,15 @@
 
 namespace collarmesh::files {
 
-/// Returns the files that writing `path` makes: the file itself and the further files of its format (its
-/// extension, or `format`). Pieces of a .pvtu are listed only if they exist.
+/// Returns the files that writing `path` makes: the file itself and the further files that its format needs.
+/// `format` overrides the extension. Pieces of a .pvtu are listed only if they exist already.
 std::vector<std::filesystem::path> files_written(const std::filesystem::path& path,
                                                  const std::string& format = {});
 
 /// Returns whether meshes of this format consist of several files.
 bool is_of_several_files(const std::string& format);
 
-/// Returns whether writing `path` may also make this file. Pieces of a .pvtu need not exist yet.
+/// Returns whether writing `path` may make or replace `file`. Pieces of a .pvtu need not exist yet.
 bool may_write(const std::filesystem::path& path, const std::string& format,
                const std::filesystem::path& file);
 

@@ -60,7 +60,7 @@ TetMesh read_mesh(const std::string& path, const std::string& format) {
   if (const std::string missing = io::missing_library(path, format); !missing.empty())
     throw ReadError(fmt::format("{}: {}", path, missing));
   if (!io::is_tet_mesh_format(path, format))
-    throw ReadError(fmt::format("{}: its format is not known by its extension '{}'; use {}", path,
+    throw ReadError(fmt::format("{}: no mesh can be read from a file with the extension '{}'; use {}", path,
                                 fs::path(path).extension().string(),
                                 fmt::join(io::read_tet_mesh_formats(), " ")));
   return io::read_tet_mesh(file, format);

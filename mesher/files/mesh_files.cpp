@@ -10,7 +10,7 @@ namespace collarmesh {
 
 namespace {
 
-/// A builder of complexes from files, one for each repair.
+/// A builder of complexes from files: one complex for each repair.
 class FilesSource : public ComplexSource {
  public:
   /// Keeps references to both arguments.

@@ -11,8 +11,8 @@ namespace collarmesh::files {
 /// OpenMesh.
 bool is_om(const std::string& path, std::string_view format);
 
-/// Call openmesh_io::read_om and write_om, which are in a module with OpenMesh. It is loaded only when such a
-/// file is read or written. Throw ReadError and WriteError, also if the module is missing.
+/// Read and write .om files by openmesh_io::read_om and write_om. These are in a module with OpenMesh, which
+/// is loaded at the first call. Throw ReadError and WriteError, also if the module is missing.
 PolygonSoup read_om(const std::string& path);
 void write_om(const std::string& path, const PolygonSoup& soup);
 

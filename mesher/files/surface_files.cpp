@@ -28,8 +28,8 @@ PolygonSoup read_surface(const std::string& path, std::string_view format) {
   if (is_om(path, format)) return read_om(path);
   if (io::is_mesh_surface_format(path, format)) return io::read_mesh_surface(path, format);
   if (!io::is_soup_format(path, format))
-    throw ReadError(fmt::format("{}: its format is not known by its extension '{}'; use {}{}{}", path,
-                                std::filesystem::path(path).extension().string(),
+    throw ReadError(fmt::format("{}: no surface can be read from a file with the extension '{}'; use {}{}{}",
+                                path, std::filesystem::path(path).extension().string(),
                                 fmt::join(surface_formats(), " "), CadFiles::formats().empty() ? "" : " ",
                                 fmt::join(CadFiles::formats(), " ")));
   return io::read_soup(path, format);

@@ -20,8 +20,8 @@ PolygonSoup read_surface(const std::string& path, std::string_view format = {});
 /// Writes a surface. Throws WriteError.
 void write_surface(const std::string& path, const PolygonSoup& soup, std::string_view format = {});
 
-/// Returns the boundary and interface triangles of a mesh with their tags, ordered by tag, because formats
-/// without tags number patches in the order of the file. Throws ReadError if there are none.
+/// Returns the boundary and interface faces of a mesh with their tags, ordered by tag, because formats
+/// without tags number patches in the order of the file. Throws ReadError if the mesh has no such triangles.
 PolygonSoup surface_of(const TetMesh& mesh, const std::string& name);
 
 }  // namespace collarmesh::files

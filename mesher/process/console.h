@@ -10,8 +10,8 @@ namespace collarmesh::process {
 /// Standard output and standard error, which may be full, closed, or pipes that nobody reads.
 class Console {
  public:
-  /// Opens a device for every standard stream that is closed. Otherwise a file opened later would get its
-  /// number, and with it the program's messages. Reading from and writing to the stream still fail.
+  /// Opens /dev/null in place of every standard stream that is closed. Otherwise a file opened later would
+  /// get the stream's number, and the program's messages would go to that file. Using the stream still fails.
   Console();
 
   /// Silences this process. When several ranks do the same work, only one prints.

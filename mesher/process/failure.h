@@ -13,7 +13,7 @@ namespace collarmesh::process {
 /// The reports that a failing command writes.
 class FailureReports {
  public:
-  /// A function that writes them. `faults` is null unless the input is no valid complex.
+  /// A function that writes the reports. `faults` is null unless the input is no valid complex.
   using Write = std::function<void(ExitCode code, std::string_view message, const PlcError* faults)>;
 
   /// Makes a later failure call this function; an empty one does nothing. Precondition: there is only one

@@ -37,8 +37,8 @@ std::string Interrupts::advice() const {
   if (stage == "complex")
     return "or, because many intersecting facets take the time, try another --repair-tolerance or --repair "
            "wrap";
-  return "or --size for a coarser mesh; if the input is meshed, --repair wrap helps, too: it ignores detail "
-         "much finer than the size";
+  return "or --size for a coarser mesh; when a surface or CAD file is meshed, --repair wrap helps, too, "
+         "because it ignores details that are much smaller than the size";
 }
 
 Stopped Interrupts::reason() const {

@@ -30,7 +30,7 @@ struct StageReached {
 
 class Process;
 
-/// Requests that the command stop, from the user or because its time is up.
+/// The requests to stop the command: from the user, or because its time is up.
 class Interrupts {
  public:
   explicit Interrupts(Process& process) : process_(process) {}
@@ -53,7 +53,7 @@ class Interrupts {
   StageReached stage_reached() const;
 
  private:
-  friend class Process;  // its handlers and its watcher
+  friend class Process;  // for its signal handlers and its watcher
 
   bool is_asked();
   std::string advice() const;

@@ -51,7 +51,7 @@ void catch_unless_ignored(int number, const struct sigaction& action) {
 
 void Process::before_all() {
   // This function runs before the program's global variables are initialized, because their initialization
-  // makes a thousand allocations.
+  // allocates memory.
   std::set_new_handler(on_no_memory);
 }
 
@@ -154,7 +154,7 @@ void Process::catch_signals() {
   for (const int number : {SIGHUP, SIGQUIT}) catch_unless_ignored(number, action);
   std::signal(SIGXCPU, on_processor_time);
   // `ulimit -t` sets the soft and the hard limit to the same time, and the signal of the hard limit cannot be
-  // caught. A lower soft limit leaves some CPU seconds, of all threads, in which the program can end.
+  // caught. With a lower soft limit some seconds of CPU time, summed over threads, remain for the end.
   constexpr rlim_t to_end_within = 2;
   rlimit limit = {};
   if (getrlimit(RLIMIT_CPU, &limit) == 0 && limit.rlim_max != RLIM_INFINITY &&
@@ -205,7 +205,7 @@ ExitCode Process::run_interruptible(const std::function<ExitCode()>& command) {
   std::optional<Watcher> watcher;
   try {
     watcher.emplace(*this);
-  } catch (const std::system_error&) {  // only stages that check the flag end at the time limit then
+  } catch (const std::system_error&) {  // then only stages that check the flag end at the time limit
     interrupts.unwatched_ = true;
     std::signal(SIGALRM, on_time);
   }

@@ -42,8 +42,9 @@ void require_place(const fs::path& target) {
   if (fs::is_directory(target, ignored))
     throw WriteError(fmt::format("{}: is a folder; name a file in another place", target.string()));
   if (fs::exists(target, ignored) && !fs::is_regular_file(target, ignored))
-    throw WriteError(fmt::format(
-        "{}: is not a regular file; name one, or - for standard output, with --format", target.string()));
+    throw WriteError(
+        fmt::format("{}: is not a regular file; name a regular file, or - with --format for standard output",
+                    target.string()));
 }
 
 /// Removes the folders of runs that were killed: nobody holds their locks. Skips young folders, which may be
@@ -74,8 +75,8 @@ fs::path temporary_place() {
   return ".";
 }
 
-/// Returns a name with 64 random bits, which no other folder has. Unlike that of mkdtemp, it is known before
-/// the folder exists.
+/// Returns a name with 64 random bits, which no other folder has. Unlike a name that mkdtemp makes, it is
+/// known before the folder exists.
 std::string unique_folder_name() {
   std::random_device bits;
   return fmt::format("{}{:08x}{:08x}", folder_prefix, bits(), bits());
@@ -94,7 +95,7 @@ fs::path StagedFiles::make_folder_beside(const fs::path& target) {
         fmt::format("{}: {} is not a folder; choose another place", target.string(), parent.string()));
   if (target != standard_output) require_place(target);
   remove_dead_folders(parent);
-  // Lists the folder before creating it, because the program may end at any time.
+  // List the folder before creating it: the program may end at any time and must know what to remove.
   folders_.push_back((parent / unique_folder_name()).string());
   process_.supervisor.add_folder(folders_.back());
   if (mkdir(folders_.back().c_str(), S_IRWXU) != 0) {
@@ -109,7 +110,7 @@ fs::path StagedFiles::make_folder_beside(const fs::path& target) {
 
 void StagedFiles::take_back() noexcept { keep_folders_ |= !replacement_.undo(); }
 
-// If the target is a symbolic link, replaces the file that it names, not the link.
+// If the target is a symbolic link, the file that it points to is replaced, not the link.
 StagedFile::StagedFile(StagedFiles& files, fs::path target) : files_(files), target_(std::move(target)) {
   std::error_code error;
   if (fs::is_symlink(target_, error))

@@ -14,10 +14,10 @@ class Process;
 class StagedFiles;
 
 /// A file that appears under its name only when it is complete. It is made in a temporary folder beside its
-/// place, and `commit` moves it to its place, together with further files that its writer makes. A replaced
-/// file passes on its mode and, where permitted, its owner. The target "-" is standard output, to which the
-/// file is copied. The folder is locked while it is in use. Unlocked folders older than a minute were left by
-/// killed runs, so they are removed.
+/// place, and `commit` moves it to its place, together with further files that its writer makes. It takes
+/// over the mode of a file that it replaces and, if permitted, the owner. The target "-" is standard output,
+/// to which the file is copied. The folder is locked while it is in use. Unlocked folders older than a minute
+/// were left by killed runs, so they are removed.
 class StagedFile {
  public:
   /// Makes the temporary folder. Throws WriteError if the folder of `target` cannot be written to.
@@ -47,7 +47,7 @@ class StagedFiles {
  public:
   explicit StagedFiles(Process& process) : process_(process) {}
 
-  /// Checks that `target`, and the files written `beside` it, can be made there. Throws WriteError with the
+  /// Checks that `target`, and the files written `beside` it, can be made. Throws WriteError with the
   /// reason. Call it before long work.
   void require_writable(const std::filesystem::path& target,
                         const std::vector<std::filesystem::path>& beside = {});
@@ -68,8 +68,8 @@ class StagedFiles {
   std::filesystem::path make_folder_beside(const std::filesystem::path& target);
   void take_back() noexcept;
 
-  // A mutex that the thread that holds it may lock again, because memory may run out meanwhile. In a forked
-  // child this works, too, unlike with std::recursive_mutex: the child's thread has another number.
+  // A mutex that its holder may lock again: `abandon` does so if memory runs out while it is held. This also
+  // works in a forked child, unlike std::recursive_mutex: the child's thread has another number.
   class Mutex {
    public:
     void lock() {

@@ -56,7 +56,7 @@ class Supervisor {
 /// it exists. If two of these objects are nested, the inner one counts. One thread must make all of them.
 class CadWork {
  public:
-  /// Begins the work. It may take this many seconds (0: any time); a time limit of the process replaces this.
+  /// Begins the work. It may take this many seconds (0: no limit); a time limit of the process replaces this.
   CadWork(Supervisor& supervisor, std::string_view doing, std::string_view file, double seconds = 0);
   ~CadWork();
   CadWork(const CadWork&) = delete;

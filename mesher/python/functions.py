@@ -51,7 +51,8 @@ def remesh(
     size: a length; lengths for each point or each tetrahedron of the mesh, as `sizes_from_errors` returns them; or a
         size field, as `size_field` in `collarmesh.mesh`. None: improve tetrahedra and keep the lengths.
     against: the input that the mesh was made of, or a list of its surfaces, as in `collarmesh.mesh`. The result follows
-        this input (on CAD shapes the exact faces) instead of the triangles of the mesh, and is certified against it.
+        this input, or the exact faces if it is a CAD shape, and not the triangles of the mesh. It is certified against
+        the input.
     # options of remesh
     progress: as in `collarmesh.mesh`.
 

@@ -31,7 +31,7 @@ def type_of(option):
 
 
 def in_python(text):
-    """Returns a text with the names of options as in Python."""
+    """Returns a text in which options are named as in Python: `max_memory` for `--max-memory`."""
     return re.sub(r"--([a-z-]+)", lambda match: match[1].replace("-", "_"), text)
 
 

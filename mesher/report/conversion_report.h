@@ -8,7 +8,7 @@
 
 namespace collarmesh::report {
 
-/// Describes the data that a format cannot store; empty if nothing is lost.
+/// Describe the data of a soup or a mesh that a format cannot store; empty if nothing is lost.
 std::vector<std::string> lost_by(const std::string& format, const PolygonSoup& soup);
 std::vector<std::string> lost_by(const std::string& format, const TetMesh& mesh);
 

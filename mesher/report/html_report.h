@@ -9,9 +9,9 @@
 
 namespace collarmesh::report {
 
-/// Returns one HTML page about a run, which needs no network: `report` (`run_json`) as text, and a view of
-/// the mesh that can be turned and cut, in the report's unit of length. The view also shows the steps of
-/// `trace`.
+/// Returns an HTML page about a run; the page needs no network. It has `report` (`run_json`) as text, and a
+/// view of the mesh that can be turned and cut, in the report's unit of length. The view also shows the steps
+/// of `trace`.
 std::string html_report(const nlohmann::ordered_json& report, const ShownMesh& shown,
                         const std::vector<ShownStep>& trace = {});
 

@@ -10,7 +10,7 @@
 
 namespace collarmesh::report {
 
-/// The triangles and quadrangles, or edges, of a mesh that have one tag.
+/// All triangles and quadrangles of a mesh, or all its edges, that have a certain tag.
 struct MeshGroup {
   Tag tag = 0;
   std::string name;       ///< given name; empty: none
@@ -20,7 +20,8 @@ struct MeshGroup {
   Point where;            ///< centre of the largest cell
 };
 
-/// Return the groups, sorted by tag. Cells of second order are measured as straight ones. Cost: linear.
+/// Return the groups of faces or of edges, sorted by tag. Cells of second order are measured as straight
+/// ones. Cost: linear.
 std::vector<MeshGroup> patches_of(const TetMesh& mesh);
 std::vector<MeshGroup> curves_of(const TetMesh& mesh);
 

@@ -6,8 +6,8 @@
 
 namespace collarmesh::report {
 
-/// Returns the values of the options that determine a mesh; null for an option that was not given if its
-/// default depends on the input.
+/// Returns the values of the options that determine a mesh; null for an option that was not given and has no
+/// fixed default.
 nlohmann::ordered_json options_json(const RunOptions& options);
 
 /// Returns the table of options, for files generated from it.

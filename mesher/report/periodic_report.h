@@ -8,7 +8,7 @@
 
 namespace collarmesh::report {
 
-/// Returns a line for each pair of groups of periodic faces.
+/// Returns a line for each pair of groups of periodic faces, and one about changes that made them alike.
 std::string periodic_text(const PeriodicReport& report);
 /// Returns the report with the motion and the node pairs of each pair of groups. Nodes are indices of the
 /// mesh's points, from 0.

@@ -27,7 +27,7 @@ struct RequestedRun : RunOptions {
 /// All results of one run of the mesher.
 struct MeshRun : SoupPipelineResult {
   PlcSummary summary;
-  std::vector<std::string> warnings;  ///< warnings of options; those of the input are in the complex
+  std::vector<std::string> warnings;  ///< about options; warnings about the input are in the complex
   std::vector<std::string> notes;     ///< notes on CAD shapes, one per line
   TagColours colours;                 ///< colours of CAD shapes
   std::vector<WorstTet> worst;

@@ -20,7 +20,7 @@ namespace {
 
 Json point_json(const Point& p) { return Json::array({p.x, p.y, p.z}); }
 
-/// Returns a number, or null for infinity, which JSON does not have.
+/// Returns a number, or null for infinity and NaN, which JSON does not have.
 Json number_json(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 /// Makes an object from distinct keys, without comparing each key with all earlier ones.
@@ -52,8 +52,8 @@ const char* status_name(MeshStatus status) {
   return "unknown";
 }
 
-/// Returns the number of places of a change, their size and some of them. `size` is the key for the size;
-/// null: leave the size out.
+/// Returns the number of places of a change, the size of the change, and some of the places. `size` is the
+/// key for the size; null: leave the size out.
 Json places_json(const RepairPlaces& places, const char* size) {
   Json where = Json::array();
   for (const Point& p : places.where) where.push_back(point_json(p));
@@ -195,8 +195,8 @@ Json colour_json(const std::map<Tag, Colour>& colours, Tag tag) {
   return found == colours.end() ? Json(nullptr) : Json(colour_text(found->second));
 }
 
-/// Returns an estimate, rounded to a whole number up to 2^53, below which doubles hold each whole number
-/// exactly; above as a double, or null if it is infinite.
+/// Returns an estimate: rounded to a whole number if it is at most 2^53, because doubles hold all whole
+/// numbers up to there; else as a double, or null if it is infinite.
 Json whole_json(double value) {
   constexpr double exact = 9007199254740992;  // 2^53
   return std::fabs(value) <= exact ? Json(std::llround(value)) : number_json(value);
@@ -282,8 +282,8 @@ Json measures_json(const TetMesh& mesh, const MeshMeasures& m) {
             {"radius_edge", {{"bin_width", 0.25}, {"tets", m.radius_edges}}}}}};
 }
 
-/// Returns for each feature from `first` on its number, its measure in the input and in the mesh, and the
-/// difference in percent.
+/// Returns, for each feature from number `first` on, its number, its measure in the input, its measure in the
+/// mesh, and the difference in percent.
 Json kept_json(const std::vector<double>& input, const std::vector<double>& mesh, std::size_t first = 0) {
   Json all = Json::array();
   for (std::size_t i = first; i < std::min(input.size(), mesh.size()); ++i)
@@ -348,7 +348,7 @@ Json check_json(const CheckReport& r) {
 }
 
 Json small_features_json(const std::vector<SmallFeature>& features) {
-  constexpr std::array kinds{"curve", "patch", "tip"};  // as SmallFeature::Kind
+  constexpr std::array kinds{"curve", "patch", "tip"};  // in the order of SmallFeature::Kind
   Json list = Json::array();
   for (const SmallFeature& feature : features)
     list.push_back({{"kind", kinds[static_cast<std::size_t>(feature.kind)]},

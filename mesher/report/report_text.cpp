@@ -57,8 +57,8 @@ std::string times_text(const StageTimes& times) {
   return text;
 }
 
-/// Returns the part of the report on changes that do not depend on the tolerance: filled holes, removed
-/// parts, a surface around everything.
+/// Returns the part of the report about changes that may exceed the tolerance, such as filled holes, removed
+/// parts, and a surface around everything.
 RepairReport beyond_tolerance(const RepairReport& report) {
   RepairReport rest;
   rest.turned = report.turned;
@@ -103,7 +103,7 @@ void append_curves(std::string& text, const Plc& plc, GroupNames names) {
     fmt::format_to(Out(text), "  ... and {} more curves (--json lists all)\n", curves.size() - listed);
 }
 
-/// Returns a predicted count: all digits below 10^12, three digits above.
+/// Returns a predicted count as text: all its digits below 10^12, three digits for larger counts.
 std::string count_text(double count) {
   return count < 1e12 ? fmt::format("{:.0f}", count) : fmt::format("{:.3g}", count);
 }
@@ -289,10 +289,9 @@ std::string straightened_text(const SecondOrderReport& r, std::size_t most) {
     const auto& s = r.straightened[k];
     fmt::format_to(
         Out(text),
-        "straightened: the mid-edge node {} between points {} and {} at ({:.9g}, {:.9g}, {:.9g}), on the "
-        "smooth {} with "
-        "tag {}, is {:.3g} off it, because on it a tet would be inverted or nearly so; a smaller size there "
-        "or --elements-per-circle avoids that\n",
+        "straightened: the mid-edge node {} between points {} and {} at ({:.9g}, {:.9g}, {:.9g}) belongs to "
+        "the smooth {} with tag {}, but stays {:.3g} away from this feature, because a tet would otherwise "
+        "be inverted or nearly so; choose a smaller size there or --elements-per-circle\n",
         s.point, s.edge[0], s.edge[1], s.where.x, s.where.y, s.where.z,
         s.feature.dimension == 1 ? "curve" : "patch", s.tag, s.distance);
   }
@@ -317,8 +316,8 @@ std::string run_text(const RequestedRun& arguments, const MeshRun& run) {
   const MeshStatistics& s = run.result.statistics;
   if (arguments.verbose)
     fmt::format_to(Out(text),
-                   "  {} vertices inserted ({} in blocks), {} cells, {} exact predicates, {} warps, {} "
-                   "yields, {:.1f} MB\n",
+                   "  {} vertices inserted ({} in blocks), {} cells, {} exact predicates, {} candidates "
+                   "replaced by points of the input, {} by points on encroached features, {:.1f} MB\n",
                    s.vertices_inserted, s.vertices_in_blocks, s.cells, s.exact_predicates, s.warps, s.yields,
                    static_cast<double>(s.peak_bytes) / 1e6);
   for (const std::string& note : run.notes) fmt::format_to(Out(text), "  {}\n", note);
@@ -333,7 +332,7 @@ std::string run_text(const RequestedRun& arguments, const MeshRun& run) {
   if (arguments.verbose && i.candidates > 0)
     fmt::format_to(Out(text),
                    "  {} of {} poor tets improved: {} edges removed, {} boundary flips, {} vertices moved, "
-                   "{} edges collapsed, {} vertices inserted; {} detours\n",
+                   "{} edges collapsed, {} vertices inserted; {} sequences of several operations\n",
                    i.candidates - std::min(i.remaining, i.candidates), i.candidates, i.edge_removals,
                    i.boundary_flips, i.moved_vertices, i.contracted_edges, i.inserted_vertices, i.detours);
   if (arguments.order == 2)

@@ -23,7 +23,7 @@ struct ShownMesh {
   std::vector<std::uint32_t> faces;   ///< on patches: three corners and an index into `face_tags` for each
   std::vector<Tag> face_tags;         ///< sorted
   std::vector<std::uint16_t> region;  ///< by tet
-  std::vector<std::uint8_t> marks;    ///< by tet: 1 in a collar, 2 thin, 8 in an odd layer, 16 in an even one
+  std::vector<std::uint8_t> marks;    ///< by tet: sum of 1 in a collar, 2 thin, 8 in odd, 16 in even layers
   std::vector<ShownWorst> worst;      ///< the given worst tets
 };
 

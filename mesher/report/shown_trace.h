@@ -18,7 +18,7 @@ struct ShownStep {
 };
 
 /// Returns the steps to show. A step with more than `most` tets shows only those at the surface and at the
-/// planes through the centre, and is left out if these are still too many. Shows cells outside all regions
+/// planes through the centre, and is left out if even these are too many. Shows cells outside all regions
 /// only if there are no others.
 std::vector<ShownStep> shown_trace(const Trace& trace, const ShownMesh& mesh, std::size_t most = 20000);
 

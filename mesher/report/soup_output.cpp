@@ -17,8 +17,8 @@ CutFacets cut_for(const std::string& format) {
   return format == ".stl" ? CutFacets::all : CutFacets::complex;
 }
 
-/// Adds region and hole points, which define the solid parts of space in a complex (a surface defines them by
-/// its orientation). Returns the text to print.
+/// Adds region and hole points: in a complex they say which parts of space are solid; in a surface its
+/// orientation says so. Returns the text to print.
 std::string place_regions(const std::vector<PolygonSoup>& soups, PlcOptions options, PolygonSoup& merged) {
   options.require_solid = false;
   try {

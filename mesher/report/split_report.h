@@ -7,7 +7,7 @@
 
 namespace collarmesh::report {
 
-/// Returns a line for each patch, and one for its nodes.
+/// Returns lines about the patches, about the split nodes, and about cohesive elements, if any.
 std::string split_text(const SplitReport& report);
 nlohmann::ordered_json split_json(const SplitReport& report);
 

@@ -1,5 +1,5 @@
 // Builds an OpenMesh mesh in memory, meshes it, walks the tetrahedra and gets the boundary back as an
-// OpenMesh mesh:
+// OpenMesh mesh. To build it with CMake:
 //   find_package(collarmesh REQUIRED)
 //   target_link_libraries(mesh_in_memory PRIVATE collarmesh::openmesh_io)
 #include <collarmesh/openmesh_io.h>
@@ -15,7 +15,7 @@
 using PolyMesh = OpenMesh::PolyMesh_ArrayKernelT<>;  // with floats; any traits work
 using TriMesh = OpenMesh::TriMesh_ArrayKernelT<>;
 
-/// Makes a box of quads. The face property "side" numbers its sides from 1.
+/// Makes a box of quads. The face property "side" numbers the sides of the box from 1.
 PolyMesh make_box(float width, float depth, float height) {
   PolyMesh mesh;
   std::vector<PolyMesh::VertexHandle> v;
@@ -65,7 +65,7 @@ int main() {
   }
   std::printf("%zu tets, volume %g, largest radius-edge ratio %.3f\n", mesh.tets.size(), volume, worst);
 
-  // The boundary as an OpenMesh mesh: how many triangles has the top?
+  // Get the boundary as an OpenMesh mesh, and count its triangles on the top.
   const TriMesh surface = om::boundary_surface<TriMesh>(mesh);
   OpenMesh::FPropHandleT<std::int64_t> tag;
   if (!surface.get_property_handle(tag, om::patch_tag)) return 1;

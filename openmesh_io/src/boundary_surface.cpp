@@ -20,7 +20,8 @@ bool matches(const std::array<Index, 2>& regions, const SurfaceSelection& s) {
   return regions[0] != regions[1] && is(regions[0], s.back) && is(regions[1], s.front);
 }
 
-/// Selects triangles with the given regions behind and in front, reversed if necessary.
+/// Adds to `surface` the triangles that have the selected regions behind and in front, as they are or when
+/// they are reversed.
 void select(const TetMesh& mesh, const SurfaceSelection& selection, SelectedSurface& surface) {
   for (Index f = 0; f < mesh.faces.size(); ++f) {
     Triangle corners = mesh.faces[f];
@@ -44,8 +45,8 @@ struct Side {
   auto points() const { return std::pair(low, high); }
 };
 
-/// Finds for each side the neighbour's side across it; none at a border, where more than two triangles meet,
-/// and where two meet with opposite orientation.
+/// Finds for each side the number that it has in the neighbouring triangle. A side has no neighbour if it
+/// belongs to one triangle, to more than two, or to two that are oriented inconsistently.
 std::vector<Index> find_neighbours(const std::vector<Triangle>& triangles) {
   std::vector<Side> sides;
   for (Index t = 0; t < triangles.size(); ++t)
@@ -70,7 +71,7 @@ std::vector<Index> find_neighbours(const std::vector<Triangle>& triangles) {
 
 /// Gives each fan of triangles around a point its own vertex.
 void separate_fans(const std::vector<Index>& neighbour, SelectedSurface& surface) {
-  std::vector<Index> fan(3 * surface.triangles.size());  // by corner, numbered like its side; union-find
+  std::vector<Index> fan(3 * surface.triangles.size());  // union-find: parents, by 3 * triangle + corner
   std::iota(fan.begin(), fan.end(), 0);
   const auto find = [&fan](Index corner) {
     while (fan[corner] != corner) corner = fan[corner] = fan[fan[corner]];
@@ -129,8 +130,8 @@ void order_by_neighbours(const std::vector<Index>& neighbour, SelectedSurface& s
   surface.face_regions = std::move(sorted.face_regions);
 }
 
-/// Finds the sides of triangles that are curve edges of the mesh. An edge occurs several times if its points
-/// were copied or if several triangles share it.
+/// Lists the sides of triangles that lie on curves of the mesh. An edge occurs once for each triangle that
+/// has it as a side.
 void find_curves(const TetMesh& mesh, SelectedSurface& surface) {
   std::map<std::pair<Index, Index>, Tag> tags;
   for (std::size_t e = 0; e < mesh.edges.size(); ++e)

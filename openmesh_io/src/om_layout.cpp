@@ -88,7 +88,7 @@ class LayoutCheck {
       read_positions(chunk, count);
     else
       skip(count * chunk.components * chunk.value_bytes, "the values of a chunk");
-    // Skip the status of faces in old files: OpenMesh may make fewer faces than they list.
+    // Skip the status of faces in old files: OpenMesh may make fewer faces than the chunk lists.
     const bool needed =
         positions || chunk.values == Values::topology || (face_status && version_ >= version_2);
     if (needed) layout_.safe_bytes.append(bytes_.substr(begin, at_ - begin));
@@ -106,13 +106,13 @@ class LayoutCheck {
     }
   }
 
-  /// Checks the order of chunks: OpenMesh makes vertices and faces when it reads their first chunk, and uses
-  /// them in the others.
+  /// Checks the order of chunks: OpenMesh makes the vertices when it reads their positions, and the faces
+  /// when it reads their topology; other chunks refer to these.
   void require_order(const Chunk& chunk) const {
     const bool topology = chunk.values == Values::topology, status = chunk.values == Values::status;
     const bool too_early = (topology && chunk.entity == Entity::vertex && !has_positions_) ||
                            (status && chunk.entity == Entity::face && !has_faces_);
-    // Old files contain only the corners of the faces, from which OpenMesh makes the halfedges.
+    // Files before version 2 contain only the corners of the faces, from which OpenMesh makes the halfedges.
     const bool too_new = topology && chunk.entity != Entity::face && version_ < version_2;
     if (too_early || too_new) fail("the chunks are not in the order that OpenMesh writes");
   }

@@ -202,11 +202,13 @@ TEST(CadModel, TellsOfEdgesAndPointsOutsideOfSolids) {
   const CadModel with_edge(compound({solid, edge}), "part"),
       with_both(compound({solid, vertex, edge}), "part");
   ASSERT_EQ(with_edge.notes().size(), 1U);
-  expect_mentions(with_edge.notes()[0],
-                  {"part", "Edge13 at (24, 5, 5)",
-                   "is left out, as part of no face and outside of the closed solids", ".poly"});
+  expect_mentions(
+      with_edge.notes()[0],
+      {"part", "Edge13 at (24, 5, 5)",
+       "is left out, because only edges and vertices of faces or inside closed solids are meshed", ".poly"});
   ASSERT_EQ(with_both.notes().size(), 1U);
-  expect_mentions(with_both.notes()[0], {"Edge13 at (24, 5, 5) and 1 more are left out, as part of no face"});
+  expect_mentions(with_both.notes()[0],
+                  {"Edge13 at (24, 5, 5) and 1 more are left out, because only edges and vertices"});
 }
 
 double length_of(const PolygonSoup& soup) {
@@ -313,7 +315,8 @@ TEST(CadModel, KeepsNumbersWhereEdgesMeetFaces) {
   EXPECT_EQ(numbers(after), numbers(before));
   for (const PolygonSoup::Segment& segment : after[2].segments) EXPECT_EQ(segment.tag, 25);
   EXPECT_NEAR(length_of(after[2]), 13, 1e-12);
-  expect_mentions(with.notes().at(0), {"Edge26 at (0.5, 0, -5) is left out, as part of no face"});
+  expect_mentions(with.notes().at(0),
+                  {"Edge26 at (0.5, 0, -5) is left out, because only edges and vertices"});
 }
 
 // Also joins edges of a wire that are given separately.

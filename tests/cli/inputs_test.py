@@ -78,7 +78,7 @@ class Hostile(ProgramTest):
 class InvalidComplex(ProgramTest):
     def test_open_surface(self):
         model = self.write("open.off", off_text(box_points(), BOX_FACES[1:]))
-        self.expect(4, model, "-o", self.out, "--repair", "none", says=[COORDINATES, "Without --repair none"])
+        self.expect(4, model, "-o", self.out, "--repair", "none", says=[COORDINATES, "Leave out --repair none"])
 
     def test_intersection(self):
         other = self.write("other.off", off_text(box_points((0.5, 0.5, 0.5), (2, 2, 2)), BOX_FACES))

@@ -568,7 +568,7 @@ class Words(ProgramTest):
         for typo, command in (("chek", "check"), ("inof", "info"), ("convrt", "convert"), ("repiar", "repair")):
             self.expect(2, typo, self.box, says=[f"{typo}: there is no such command or file; did you mean {command}"])
         self.write("chek", "a file")
-        self.expect(3, "chek", "-o", self.out, says=["format is not known"])
+        self.expect(3, "chek", "-o", self.out, says=["can be read from a file with the extension"])
 
     def test_help_says_what_commands_do(self):
         for command, words in (("check", "Certify a mesh"), ("info", "Describe the input"),

@@ -69,7 +69,8 @@ class Remeshing(ProgramTest):
         self.assertEqual(written[1], written[2])
 
     def test_what_is_wrong_is_told(self):
-        self.expect(3, "remesh", self.box, "-o", "next.vtu", "--size", "0.2", says=["its format is not known"])
+        self.expect(3, "remesh", self.box, "-o", "next.vtu", "--size", "0.2",
+                    says=["no mesh can be read from a file with the extension"])
         self.expect(3, "remesh", "first.vtk", "-o", "next.vtu", says=["did you mean", "first.vtu"])
         self.expect(2, "remesh", "first.vtu", says=["--output"])
         self.expect(2, "remesh", "first.vtu", "-o", "first.vtu", says=["would overwrite"])

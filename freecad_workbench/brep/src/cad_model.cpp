@@ -56,7 +56,7 @@ struct BoxedFace {
   TopoDS_Shape face;
   Bnd_Box rough;
   bool has_slow_box = false;
-  bool is_inside_rough = false;  // OpenCASCADE only samples some other surfaces for a rough box
+  bool is_inside_rough = false;  // false for surfaces that OpenCASCADE only samples for the rough box
 };
 
 std::vector<BoxedFace> boxed_faces(const TopoDS_Shape& shape) {
@@ -74,8 +74,9 @@ std::vector<BoxedFace> boxed_faces(const TopoDS_Shape& shape) {
   return faces;
 }
 
-/// Returns the diagonal of the smallest box around a shape. Faces whose boxes are fast to compute or large
-/// come first, because other faces need no exact box if they do not reach beyond the box of these.
+/// Returns the diagonal of the smallest box around a shape. Begins with faces whose exact boxes are fast to
+/// compute, and among the others with large ones: a face whose rough box lies inside the box so far needs no
+/// exact one.
 double diagonal_of(const TopoDS_Shape& shape) {
   const auto add = [](const TopoDS_Shape& part, Bnd_Box& box) {
     BRepBndLib::AddOptimal(part, box, /*useTriangulation=*/false, /*useShapeTolerance=*/false);
@@ -95,7 +96,8 @@ double diagonal_of(const TopoDS_Shape& shape) {
   return box.IsVoid() ? 0 : std::sqrt(box.SquareExtent());
 }
 
-/// Returns the distances of the faces' nearest points from a place, with the faces' numbers; nearest first.
+/// Returns for each face the distance from a place to the nearest point of its tessellation, with the face's
+/// number; nearest first.
 std::vector<std::pair<double, int>> faces_by_distance(const Tessellation& tessellation, const Point& where) {
   std::vector<std::pair<double, int>> faces;
   for (const auto& [number, pieces] : tessellation.faces) {

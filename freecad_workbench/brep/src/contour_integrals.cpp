@@ -41,8 +41,8 @@ bool is_above(const FaceMeasure& a, const FaceMeasure& limit) {
   return std::fabs(a.area) > limit.area || std::fabs(a.cone) > limit.cone;
 }
 
-/// A rule of Kronrod (1965) and the rule of Gauss whose points it contains, in -1 to 1. Points on the right
-/// side, the middle last; every second point is of Gauss.
+/// A quadrature rule of Kronrod (1965) on [-1, 1], and the Gauss rule whose points it contains. Lists the
+/// points from 1 down to 0, the middle; every second one, the middle too, is a point of the Gauss rule.
 template <std::size_t N>
 struct Rule {
   std::array<double, N> at, kronrod;
@@ -66,9 +66,9 @@ constexpr Rule<8> of_15_points{{0.991455371120812639206854697526329, 0.949107912
                                {0.129484966168869693270611432679082, 0.279705391489276667901467771423780,
                                 0.381830050505118944950369775488975, 0.417959183673469387755102040816327}};
 
-/// Integrates from a to b. Halves the interval while the rules of Gauss and Kronrod differ by more than the
-/// tolerance, at most `halvings` times; if they still differ then, sets `converges` to false. The result of
-/// Kronrod's rule, which is returned, is far more exact than the difference.
+/// Integrates from a to b by Kronrod's rule, whose error is far smaller than its difference from the Gauss
+/// rule. Halves the interval, and for each half the tolerance, while the rules differ by more than the
+/// tolerance, at most `halvings` times; if they still differ then, sets `converges` to false.
 template <std::size_t N, class Function>
 FaceMeasure integrate(const Rule<N>& rule, const Function& f, double a, double b,
                       const FaceMeasure& tolerance, bool& converges, unsigned halvings = 8) {
@@ -90,10 +90,10 @@ FaceMeasure integrate(const Rule<N>& rule, const Function& f, double a, double b
          integrate(rule, f, middle, b, each, converges, halvings - 1);
 }
 
-/// The place of the apex in the axes of a surface.
+/// The axes of a surface, relative to the apex.
 struct Frame {
-  double x, y, z;     ///< from the apex to the origin of the axes
-  double handedness;  ///< -1 if the axes are left-handed
+  double x, y, z;     ///< vector from the apex to the origin of the axes, along these axes
+  double handedness;  ///< 1, or -1 if the axes are left-handed
 
   Frame(const gp_Ax3& axes, const gp_Pnt& apex) : handedness(axes.Direct() ? 1 : -1) {
     const gp_Vec to_origin(apex, axes.Location());
@@ -143,7 +143,7 @@ Antiderivative of_torus(const Frame& f, double major, double minor) {
   };
 }
 
-/// Returns an empty function if the antiderivative has no simple form.
+/// Returns the antiderivative for the surface; an empty function if it has no simple form.
 Antiderivative known_antiderivative(const BRepAdaptor_Surface& surface, const gp_Pnt& apex) {
   if (std::fabs(surface.Trsf().ScaleFactor()) != 1) return {};
   switch (surface.GetType()) {
@@ -162,7 +162,7 @@ Antiderivative known_antiderivative(const BRepAdaptor_Surface& surface, const gp
   }
 }
 
-/// Returns where a curve or surface changes its formula.
+/// Returns the parameters that bound the spans of a curve or surface, on each of which it has one formula.
 template <class Shape, class Count, class Get>
 std::vector<double> ends_of_spans(Shape& shape, const Count& count, const Get& get) {
   const int spans = (shape.*count)(GeomAbs_CN);
@@ -220,8 +220,9 @@ class Contour {
     if (surface_.IsVPeriodic()) repeat(v_spans_, surface_.VPeriod(), v_low_, v_high_);
   }
 
-  /// Sets tolerances relative to the face. The scale of the cone does not vanish for faces in a plane through
-  /// the apex, where only rounding errors are left.
+  /// Sets tolerances relative to the size of the face. The tolerance of the cone comes from the face's
+  /// distance to the apex, because the cone itself has no volume if the face lies in a plane through the
+  /// apex.
   void set_tolerance() {
     const double precision = known_ ? 1e-8 : 1e-5;
     FaceMeasure largest{};
@@ -254,7 +255,7 @@ class Contour {
     return {normal.Magnitude(), gp_Vec(apex_, at).Dot(normal) / 3};
   }
 
-  /// Integrates along u or v from the least value on the face.
+  /// Integrates along the inner parameter, from its least value on the face to (u, v).
   FaceMeasure inner_integral(double u, double v) {
     if (known_) return known_(u, v) - known_(u_low_, v);
     const double to = inner_is_v_ ? v : u;
@@ -271,7 +272,7 @@ class Contour {
     return sum;
   }
 
-  /// Returns the integral of the inner integral along a curve of the parameters.
+  /// Integrates the inner integral along a curve in the parameter plane.
   FaceMeasure along(Geom2dAdaptor_Curve& curve) {
     std::vector<double> ends =
         ends_of_spans(curve, &Geom2dAdaptor_Curve::NbIntervals, &Geom2dAdaptor_Curve::Intervals);
@@ -306,12 +307,12 @@ class Contour {
   gp_Pnt apex_;
   BRepAdaptor_Surface surface_;
   Antiderivative known_;
-  double u_low_ = 0, u_high_ = 0, v_low_ = 0, v_high_ = 0;  // around the face
+  double u_low_ = 0, u_high_ = 0, v_low_ = 0, v_high_ = 0;  // bounds of the face's parameters
   std::vector<double> u_spans_, v_spans_;
   bool inner_is_v_ = false;
   FaceMeasure inner_tolerance_, outer_tolerance_;
   double slowest_ = 0;  // a curve that goes no farther than this in the outer direction adds nothing
-  std::size_t evaluations_left_ = 2'000'000;  // with more of them, OpenCASCADE's integrals take no longer
+  std::size_t evaluations_left_ = 2'000'000;  // with more, OpenCASCADE's integrals are as fast
   bool converges_ = true;
 };
 

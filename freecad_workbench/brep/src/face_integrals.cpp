@@ -19,8 +19,9 @@ namespace collarmesh::brep {
 
 namespace {
 
-/// Returns the face as a spline surface if it is an extruded or revolved spline curve. OpenCASCADE does not
-/// know the spans of such surfaces, and adaptive integrals then miss waves.
+/// Converts a face to a spline surface if its surface is an extruded or revolved spline curve: OpenCASCADE
+/// does not know the spans of such surfaces, and its adaptive integrals miss waves on them. Returns other
+/// faces unchanged.
 TopoDS_Face with_known_spans(const TopoDS_Face& face) {
   const BRepAdaptor_Surface surface(face, false);
   const bool is_swept =
@@ -59,8 +60,8 @@ FaceMeasure FaceIntegrals::measure(const TopoDS_Shape& face) const {
   }
 }
 
-/// Integrates over a face as it lies in space, whatever its orientation. Adaptive integrals are much more
-/// exact than fixed ones, which have too few points for splines of many spans.
+/// Integrates over a face, with the normals of its surface. Adaptive integrals are much more exact than those
+/// with a fixed number of points, which is too small for splines of many spans.
 template <class Integral>
 double FaceIntegrals::integrated(const TopoDS_Shape& face) const {
   const TopoDS_Face forward = with_known_spans(TopoDS::Face(face.Oriented(TopAbs_FORWARD)));
@@ -68,7 +69,7 @@ double FaceIntegrals::integrated(const TopoDS_Shape& face) const {
   BRepGProp_Domain domain(forward);
   const int spans = surface.SUIntSubs() * surface.SVIntSubs();
   constexpr int few = 8, many = 10'000;             // with many spans adaptive integrals would take long
-  const double error = spans <= few ? 1e-3 : 1e-5;  // OpenCASCADE's estimate; on waves it is too low
+  const double error = spans <= few ? 1e-3 : 1e-5;  // relative; OpenCASCADE underestimates it on waves
   Integral integral;
   integral.SetLocation(apex_);
   if (forward.NbChildren() == 0)

@@ -9,8 +9,8 @@
 
 namespace collarmesh::brep {
 
-/// Areas of faces and volumes of the cones over them, with an apex inside the shape. Each face is integrated
-/// once. NaN where OpenCASCADE fails, as it does on some shapes.
+/// Areas of faces and volumes of the cones over them. The apex is the centre of the shape's bounding box.
+/// Each face is integrated once. A measure is NaN if OpenCASCADE fails, as it does on some faces.
 class FaceIntegrals {
  public:
   explicit FaceIntegrals(const TopoDS_Shape& shape);

@@ -35,7 +35,7 @@ using Parameters = std::array<double, 2>;
 
 Ends sorted(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
 
-/// Returns the sides that belong to an odd number of triangles, with this number.
+/// Returns the sides that belong to an odd number of triangles, with these numbers.
 std::map<Ends, int> odd_sides(const std::vector<std::array<Index, 3>>& triangles) {
   std::map<Ends, int> uses;
   for (const auto& t : triangles)
@@ -70,7 +70,8 @@ void triangulate(const TopoDS_Shape& shape, double deflection, double angle) {
   const BRepMesh_IncrementalMesh mesh(shape, parameters);
 }
 
-/// Returns the triangulation that is stored with a face; without triangles if there is none.
+/// Returns the triangulation that is stored with a face; a result without triangles if there is none or it
+/// has no parameters.
 MendedFace triangles_on(const TopoDS_Face& face) {
   MendedFace own;
   own.face = face;
@@ -105,7 +106,7 @@ class Mender {
 
   MendedFace run() {
     constexpr double coarse =
-        4;  // factor of the deflection; below 1 rarely helps, and takes minutes if an outline crosses itself
+        4;  // factor of the deflection; less than 1 rarely helps, and takes long if an outline crosses itself
     try_way([&] { return alone(copied(face_), "alone"); });
     try_way([&] { return alone(healed(face_), "alone after shape healing"); });
     try_way([&] { return in_parameter_plane(); });
@@ -208,8 +209,8 @@ class Mender {
     return sum;
   }
 
-  /// Returns scaled parameters of inner nodes: those of a triangulated patch of the surface, as large as the
-  /// outline's box, except nodes close to the outline.
+  /// Returns scaled parameters of inner nodes. They are the nodes of a triangulated patch of the surface,
+  /// which covers the outline's box in the parameter plane, without those close to the outline.
   std::vector<Parameters> inner_parameters(const std::vector<Parameters>& outline,
                                            const Parameters& scale) const {
     std::vector<Parameters> inner;
@@ -243,7 +244,7 @@ class Mender {
   }
 
   /// Triangulates the outline in the plane orthogonal to its area vector. Returns no triangles if chords
-  /// cross there, or if a triangle's centre is far from the surface.
+  /// cross in that plane, or if the centre of a triangle is far from the surface.
   MendedFace in_fitted_plane() const {
     MendedFace result = bare();
     result.how = "from its outline in a fitted plane";

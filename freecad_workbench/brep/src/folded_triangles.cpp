@@ -12,16 +12,17 @@ namespace {
 
 using Triangle = std::array<Index, 3>;
 
-/// Triangles that change, with the triangle at each directed side.
+/// A changing set of triangles that finds the triangle at each directed side.
 class SidedTriangles {
  protected:
-  /// Two triangles with a common side, and those that take their places if it is flipped.
+  /// The numbers of two triangles with a common side, and the triangles that replace them if the side is
+  /// flipped.
   struct Flip {
     std::array<Index, 2> numbers;
     std::array<Triangle, 2> triangles;
   };
 
-  /// Keeps references to both.
+  /// Keeps references to both arguments.
   SidedTriangles(const std::vector<Point>& points, std::vector<Triangle>& triangles)
       : points_(points), triangles_(triangles) {
     for (Index t = 0; t < triangles_.size(); ++t) add_sides(t);
@@ -32,10 +33,10 @@ class SidedTriangles {
     const auto found = triangle_at_.find(key(from, to));
     return found == triangle_at_.end() ? none : found->second;
   }
-  /// Returns the triangle on the other side of a side; none if there is none.
+  /// Returns the neighbour of triangle `t` at its side `i`; none at the border.
   Index across(Index t, Index i) const { return triangle_at(corner(t, i + 1), corner(t, i)); }
 
-  /// Returns the flip of a side; nothing if the new side exists already or no triangle is on the other side.
+  /// Returns the flip of a side; nothing if the new side exists already or the side is at the border.
   std::optional<Flip> flip_of(Index t, Index side) const {
     const Index a = corner(t, side), b = corner(t, side + 1), c = corner(t, side + 2),
                 other = across(t, side);
@@ -95,7 +96,7 @@ class Flipper : SidedTriangles {
   }
   double length(Index t, Index i) const { return distance(points_[corner(t, i)], points_[corner(t, i + 1)]); }
 
-  /// Flips a side. Returns the number of the second triangle that this changed; none if the side stays.
+  /// Flips a side. Returns the number of the neighbour, which changes, too; none if the side stays.
   Index flip(Index t, Index side) {
     const std::optional<Flip> found = flip_of(t, side);
     if (!found) return none;
@@ -108,7 +109,7 @@ class Flipper : SidedTriangles {
   double height_;
 };
 
-/// The triangles of a face, whose folds it removes by edge flips and edge collapses.
+/// A remover of the folds of a face's triangles, by edge flips and edge collapses.
 class Unfolder : SidedTriangles {
  public:
   Unfolder(const std::vector<Point>& points, std::vector<Triangle>& triangles)
@@ -143,8 +144,8 @@ class Unfolder : SidedTriangles {
   }
   std::size_t folds_at(Index t) const { return folds_around(std::span(&t, 1), {}); }
 
-  /// Returns the number of sides of some triangles at which the surface is folded. If `as` is not empty,
-  /// counts as if it had replaced these triangles; it has the same border.
+  /// Returns at how many sides of the triangles `some` the surface is folded. If `as` is not empty, counts as
+  /// if these triangles, which have the same border, had replaced `some`.
   std::size_t folds_around(std::span<const Index> some, std::span<const Triangle> as) const {
     std::vector<Triangle> shapes(as.begin(), as.end());
     if (as.empty())
@@ -182,7 +183,7 @@ class Unfolder : SidedTriangles {
     }
   }
 
-  /// Flips a side of a triangle if that leaves fewer folds.
+  /// Flips a side of a triangle if that reduces the number of folds. Returns whether one was flipped.
   bool flip_one(Index t) {
     for (Index i = 0; i < 3; ++i) {
       const std::optional<Flip> flip = flip_of(t, i);
@@ -193,7 +194,8 @@ class Unfolder : SidedTriangles {
     return false;
   }
 
-  /// Returns the triangles around a point inside the face, in order; empty if they do not close.
+  /// Returns the triangles around a point, in order; empty if they do not close a ring, or are more than
+  /// `most_in_star`.
   std::vector<Index> star(Index t, Index p) const {
     std::vector<Index> around;
     for (Index next = t; next != none && around.size() < most_in_star;) {
@@ -206,8 +208,8 @@ class Unfolder : SidedTriangles {
     return {};
   }
 
-  /// Collapses an edge at a corner inside the face if that leaves fewer folds and the surface near the
-  /// corner.
+  /// Collapses an edge at a corner of a triangle that lies inside the face, if that reduces the number of
+  /// folds and the surface stays near the corner. Returns whether one was collapsed.
   bool collapse_one(Index t, Index first_inner, double distance) {
     for (Index i = 0; i < 3; ++i) {
       const Index p = corner(t, i);
@@ -227,8 +229,8 @@ class Unfolder : SidedTriangles {
     return false;
   }
 
-  /// Returns triangles that fill a star after its centre is removed, all with the corner `apex`; empty if one
-  /// of their new edges exists already.
+  /// Returns triangles that fill a star after its centre is removed, all with the corner `apex`; empty if
+  /// there are none or one of their new edges exists already.
   std::vector<Triangle> fan_from(Index apex, const std::vector<Index>& around, Index centre) const {
     std::vector<Triangle> fan;
     for (const Index s : around) {
@@ -246,8 +248,8 @@ class Unfolder : SidedTriangles {
     return fan;
   }
 
-  /// Returns whether the point is within the limit of a triangle's corner, or of a triangle's plane and above
-  /// the inside of the triangle.
+  /// Returns whether a point is within the limit of a corner, or projects into a triangle from within the
+  /// limit of its plane. Triangles without area do not count.
   bool keeps_near(Index p, const std::vector<Triangle>& fan, double distance_limit) const {
     return std::any_of(fan.begin(), fan.end(), [&](const Triangle& t) {
       const Vector n = normal(t);

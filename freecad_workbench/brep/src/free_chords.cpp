@@ -1,4 +1,4 @@
-// Makes chords and points of the edges and vertices inside solids that belong to no face.
+// Converts the edges and vertices inside solids that belong to no face to chords and points.
 #include "free_chords.h"
 
 #include "free_parts.h"
@@ -75,7 +75,8 @@ class Cutter {
     return static_cast<Index>(soup_.points.size() - 1);
   }
 
-  /// Returns the point of a vertex. Ends that meet within their tolerance are one point.
+  /// Returns the point of a vertex. A vertex within its tolerance of an earlier one shares the point of that
+  /// one.
   Index vertex(const TopoDS_Vertex& vertex) {
     const Point p = to_point(BRep_Tool::Pnt(vertex));
     const double tolerance = std::max(Precision::Confusion(), BRep_Tool::Tolerance(vertex));
@@ -112,7 +113,7 @@ class CutEdges {
   explicit CutEdges(double deflection) : reach_(2 * deflection) {}
 
   /// Returns whether an earlier edge without a common end is so near that its chords and those of this edge
-  /// may cross. The chords of straight edges are the edges themselves.
+  /// may cross. Two straight edges are never too near, because their chords are the edges themselves.
   bool are_near(const TopoDS_Shape& edge) const {
     const bool straight = is_straight(edge);
     const Bnd_Box box = box_of(edge);

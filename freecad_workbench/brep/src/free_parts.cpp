@@ -77,7 +77,8 @@ bool runs_along(const TopoDS_Shape& edge, const TopoDS_Shape& other, double tole
   return distance_between(middle_of(edge), other) <= tolerance;
 }
 
-/// Returns whether two parts meet in other ways than end to end.
+/// Returns whether two parts meet elsewhere than end to end, or run along each other. Also true if
+/// OpenCASCADE fails.
 bool meet_amid(const TopoDS_Shape& a, const TopoDS_Shape& b) {
   const double tolerance = std::max(tolerance_of(a), tolerance_of(b));
   const BRepExtrema_DistShapeShape nearest(a, b);
@@ -115,8 +116,7 @@ class Faces {
   }
 
   /// Returns the distance of an edge's middle, or of a vertex, from the faces that are not planar; infinite
-  /// if there are none. An edge with both ends on a curved face may be as near to the face as the face's
-  /// triangles are.
+  /// if there are none. An edge with both ends on a curved face may lie between the face and its triangles.
   double distance_to_curved(const TopoDS_Shape& part) const {
     const TopoDS_Shape middle = is_edge(part) ? middle_of(part) : part;
     double least = std::numeric_limits<double>::infinity();
@@ -293,7 +293,8 @@ class Sorter {
     if (!all_cut) meeting_.push_back(part.name);
   }
 
-  /// Keeps a piece if it lies inside a solid. Returns false if it lies inside but was not cut at the faces.
+  /// Keeps a piece if it lies inside a solid, and sets `inside`. Returns false if the piece lies inside but
+  /// still meets a face, or if OpenCASCADE fails.
   bool keep_piece(const Candidate& part, const TopoDS_Shape& piece, const Faces& faces, bool& inside) {
     try {
       inside = solids_.hold_some_of(piece, faces);
@@ -311,7 +312,8 @@ class Sorter {
     }
   }
 
-  /// Lists a piece whose number is not that of its part: several parts or faces may share the piece.
+  /// Records for a note that a piece has another number than its part. This is so if parts or faces share the
+  /// piece.
   void note_number(const Candidate& part, const TopoDS_Shape& piece) {
     const int number = topology_.number(piece);
     if (number == part.number) return;
@@ -330,7 +332,7 @@ class Sorter {
 
   void tell() const {
     tell(
-        outside_, "left out, as part of no face and outside of the closed solids or on their faces",
+        outside_, "left out, because only edges and vertices of faces or inside closed solids are meshed",
         "to get nodes on lines and points, give them as segments and points of a .poly file beside this one");
     tell(partly_, "partly outside of the closed solids, and left out there", "end edges at the faces");
     tell(meeting_,

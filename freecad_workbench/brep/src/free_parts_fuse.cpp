@@ -1,4 +1,5 @@
-// Cuts edges and vertices of no face at the faces that they meet, and inserts vertices into these faces.
+// Cuts edges and vertices that belong to no face where they meet faces or one another, and inserts vertices
+// and edges into these faces.
 #include "free_parts_fuse.h"
 
 #include <TopoDS_Compound.hxx>
@@ -45,7 +46,7 @@ bool spoils_a_solid(BOPAlgo_Builder& fuse, const Shapes& closed) {
   });
 }
 
-/// Replaces the solids and internal faces by their pieces.
+/// Replaces the closed solids and the internal faces by their pieces.
 void replace_faces(const PartsOf& parts_of, Topology& topology) {
   for (Topology::Solid& solid : topology.solids)
     if (!solid.open) solid = merged(pieces_of(subshapes(solid.shape, TopAbs_SOLID), parts_of), solid.number);

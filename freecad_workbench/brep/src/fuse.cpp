@@ -42,7 +42,7 @@ struct Argument {
     }
   }
 
-  /// Returns the faces whose boxes meet a box.
+  /// Returns the indices of faces whose boxes meet a box.
   std::vector<std::size_t> faces_at(const Bnd_Box& other) const {
     std::vector<std::size_t> near;
     for (std::size_t f = 0; f < faces.size(); ++f)
@@ -56,7 +56,7 @@ struct Argument {
   Bnd_Box box;
 };
 
-/// Returns the pairs of faces that may meet.
+/// Returns the indices of all pairs of a face of `a` and a face of `b` whose boxes meet.
 std::vector<std::array<std::size_t, 2>> face_pairs(const Argument& a, const Argument& b) {
   std::vector<std::array<std::size_t, 2>> pairs;
   if (a.box.IsOut(b.box)) return pairs;
@@ -67,8 +67,8 @@ std::vector<std::array<std::size_t, 2>> face_pairs(const Argument& a, const Argu
   return pairs;
 }
 
-/// Returns the groups of two or more arguments that are connected by pairs of faces that may meet, each in
-/// ascending order.
+/// Returns groups of two or more arguments, each in ascending order. Arguments are in one group if they are
+/// connected by pairs of faces whose boxes meet.
 std::vector<Group> groups_of(const std::vector<Argument>& arguments) {
   std::vector<std::size_t> group(arguments.size());
   std::iota(group.begin(), group.end(), 0);
@@ -123,7 +123,7 @@ std::vector<std::array<TopoDS_Shape, 2>> pairs_apart(const std::vector<Argument>
 }
 
 /// Returns a vertex for each place where solids touch in a single point, which general fuse does not find.
-/// Does not search if there are many pairs of faces, because each costs milliseconds.
+/// Does not search if there are many pairs of faces, because each search takes long.
 std::vector<TopoDS_Shape> contact_points(const TopoDS_Shape& fused) {
   constexpr std::size_t many = 100;
   std::vector<Argument> solids;
@@ -176,7 +176,7 @@ double unsoundness(BOPAlgo_Builder& fuse, const TopoDS_Shape& solid) {
 
 namespace {
 
-/// Fuses shapes, with a vertex at each place where solids touch in a point. Null if that fails.
+/// Fuses shapes, with a vertex at each place where solids touch in a point. Returns null if that fails.
 Fuse fuse_with_contacts(const std::vector<TopoDS_Shape>& shapes) {
   try {
     const Fuse fuse = general_fuse(shapes);
@@ -191,9 +191,9 @@ Fuse fuse_with_contacts(const std::vector<TopoDS_Shape>& shapes) {
   }
 }
 
-/// Fuses the shapes that may touch. If parts of some solids are unsound, moves the worst solid from `shapes`
-/// to `left_out` and fuses again, because it may have spoilt the others. Null if a fuse fails or fewer than
-/// two shapes are left.
+/// Fuses the shapes that may touch. If parts of some solids are unsound, moves the solid with the largest
+/// unsoundness from `shapes` to `left_out` and fuses again, because it may have spoilt the others. Returns
+/// null if a fuse fails or fewer than two shapes are left.
 Fuse sound_fuse(std::vector<TopoDS_Shape>& shapes, std::vector<TopoDS_Shape>& left_out) {
   constexpr int rounds = 3;  // from this round on all solids with unsound parts are left out
   for (int round = 1; shapes.size() > 1; ++round) {
@@ -241,8 +241,8 @@ class Pieces {
   /// Returns whether a solid shares a piece with another solid.
   bool overlaps(std::size_t solid) const { return common_[solid]; }
 
-  /// Returns the owner of a piece: the first of the solids that contain it, except solids inside which
-  /// another of them lies wholly: the inner one would be lost otherwise.
+  /// Returns the owner of a piece: the first of the solids that contain it, except solids that wholly contain
+  /// another one of these. Otherwise that inner solid would lose all its pieces.
   std::size_t owner(std::size_t piece) const {
     for (const std::size_t s : holders_[piece])
       if (std::none_of(holders_[piece].begin(), holders_[piece].end(),
@@ -309,8 +309,8 @@ void tell_overlaps(const std::string& file, const std::vector<Common>& overlaps,
                     names_of(overlaps[i].holders, topology.solids), text(overlaps[i].where),
                     overlaps[i].volume, overlaps[i].number));
   if (overlaps.size() > listed)
-    topology.notes.push_back(
-        fmt::format("{}: {} more overlaps of solids were resolved", file, overlaps.size() - listed));
+    topology.notes.push_back(fmt::format("{}: {} more overlaps of solids were treated in the same way", file,
+                                         overlaps.size() - listed));
 }
 
 /// Assigns each piece to a region. Returns the regions in the order of their numbers.
@@ -358,7 +358,7 @@ std::vector<Topology::Solid> distribute(const std::string& file, Overlap overlap
   return result;
 }
 
-/// The solids and faces after the fuses.
+/// The fuses of a topology's closed solids and internal faces.
 class SharedFaces {
  public:
   SharedFaces(const std::string& file, Topology& topology) : file_(file), topology_(topology) {
@@ -406,12 +406,13 @@ class SharedFaces {
     const bool more = names.size() > listed;
     names.resize(std::min(listed, names.size()));
     topology_.notes.push_back(fmt::format(
-        "{}: OpenCASCADE's general fuse does not find where {}{} and the solids around {} meet; their "
-        "triangles have to be cut",
+        "{}: OpenCASCADE's general fuse does not find where {}{} and the solids around {} meet, so repair "
+        "has to cut the triangles of these solids",
         file_, fmt::join(names, ", "), more ? ", ..." : "", text(place_of(left_out.front()))));
   }
 
-  /// Adds notes on solids inside others whose faces they do not touch: they become regions of their own.
+  /// Adds a note on each solid that lies inside another one and does not touch its faces: it becomes a region
+  /// of its own.
   void tell_nested(const std::vector<Argument>& arguments) {
     for (const Argument& inner : arguments)
       for (const Argument& outer : arguments)
@@ -464,7 +465,7 @@ class SharedFaces {
     topology_.internal_faces = internal;
   }
 
-  /// Returns the faces that remain when walls between parts of one region are removed.
+  /// Returns the shape after the fuses, without walls between parts of one region.
   TopoDS_Shape everything_after() const {
     if (fuses_.size() == 1 && fused_.Extent() == static_cast<int>(shapes_.size()) &&
         !has_walls(fuses_.front()->Shape()))
@@ -489,7 +490,7 @@ class SharedFaces {
 
   const std::string& file_;
   Topology& topology_;
-  std::vector<TopoDS_Shape> shapes_;  // faces come first
+  std::vector<TopoDS_Shape> shapes_;  // internal faces, then closed solids
   std::vector<Fuse> fuses_;
   TopTools_MapOfShape fused_;
 };

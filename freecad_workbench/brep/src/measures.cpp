@@ -17,7 +17,7 @@ namespace collarmesh::brep {
 
 namespace {
 
-/// Returns NaN if OpenCASCADE fails, as it does on some edges.
+/// Returns the length of an edge; NaN if OpenCASCADE fails, as it does on some edges.
 double length_of(const TopoDS_Shape& edge) {
   try {
     const BRepAdaptor_Curve curve(TopoDS::Edge(edge));
@@ -52,7 +52,7 @@ double volume_of_triangles(const PolygonSoup& soup) {
   return volume;
 }
 
-/// A sum over the parts of a sub-shape, and the possible error of the tessellation.
+/// Sums over the parts of a sub-shape: of both measures, and of the difference that the deflection allows.
 struct Sum {
   CadMeasure measure;
   double allowed = 0;
@@ -62,7 +62,7 @@ struct Sum {
     measure.cut += cut;
     allowed += off;
   }
-  /// Returns whether the exact measure and the tessellation agree; otherwise one of them is wrong.
+  /// Returns whether the exact measure and that of the tessellation agree. If not, one of them is wrong.
   bool is_plausible() const {
     constexpr double share = 0.05;  // relative; an arc of 20 degrees exceeds its chord by less than 1%
     return std::fabs(measure.exact - measure.cut) <= share * measure.cut + allowed;

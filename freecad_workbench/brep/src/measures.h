@@ -7,8 +7,9 @@
 
 namespace collarmesh::brep {
 
-/// Sums up the integrals over the exact solids, faces and edges, and the sizes of their triangles and chords.
-/// `integrals`: those of all faces of the topology.
+/// Measures the exact solids, faces and edges, by integrals, and their triangles and chords. Leaves out a
+/// measure if the difference of both is larger than this deflection (absolute) explains. `integrals` are
+/// those of all faces of the topology.
 CadMeasures measure(const Topology& topology, const FaceIntegrals& integrals,
                     const Tessellation& tessellation, double deflection);
 

@@ -3,7 +3,7 @@
 
 #include "points.h"
 
-#define BOOST_ALLOW_DEPRECATED_HEADERS  // for Boost itself
+#define BOOST_ALLOW_DEPRECATED_HEADERS  // Boost's own headers include some
 #include <BRepAdaptor_Curve.hxx>
 #include <BRepAdaptor_Surface.hxx>
 #include <ElSLib.hxx>
@@ -32,20 +32,20 @@ using TreeBox = bg::model::box<TreePoint>;
 using Tree = bg::index::rtree<std::pair<TreeBox, std::size_t>, bg::index::quadratic<16>>;
 
 gp_Pnt to_gp(const Point& p) { return {p.x, p.y, p.z}; }
-/// Replaces `best` by `other` if that is nearer to p.
+/// Replaces `best` by `other` if `other` is nearer to p, or if there is no `best` yet.
 void keep_nearer(std::optional<Point>& best, const std::optional<Point>& other, const Point& p) {
   if (other && (!best || squared_distance(*other, p) < squared_distance(*best, p))) best = other;
 }
 
-/// Limits of a descent to the point nearest to p. Lengths are relative to the distance of p from the origin
-/// plus that from the start.
+/// Limits of a descent to the point nearest to p. Lengths are relative to a scale: the distance of p from the
+/// origin plus its distance from the start of the descent.
 namespace descent {
 constexpr int steps = 50, halvings = 20;
 constexpr double rounding = 1e-15;
-constexpr double converged = 1e-11;  // a descent may end with a step up to this, as rounding hides its gain
+constexpr double converged = 1e-11;  // a step up to this may end a descent: rounding hides its gain
 }  // namespace descent
 
-/// Returns the weights of a triangle's corners for its point nearest to p.
+/// Returns the barycentric coordinates of the point of a triangle that is nearest to p.
 std::array<double, 3> nearest_weights(const Point& p, const std::array<Point, 3>& corners) {
   const Vector normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
   std::array<double, 3> weights{-1, -1, -1};
@@ -98,10 +98,11 @@ class EdgeCurve {
     points_.push_back(to_point(curve_.Value(parameter)));
   }
 
-  /// Adds points up to this parameter, so many that the edge is nearly straight between them.
+  /// Adds points up to this parameter, so many that the edge is nearly straight between them (or `deepest`
+  /// halvings are reached).
   void add_up_to(double parameter, int depth) {
     constexpr int deepest = 10;
-    constexpr double straight = 0.02;  // largest distance from the edge, relative to the chord's length
+    constexpr double straight = 0.02;  // largest distance of edge and chord, relative to the chord's length
     const double from = parameters_.back();
     const Point start = points_.back(), end = to_point(curve_.Value(parameter));
     double off = 0;
@@ -144,8 +145,9 @@ class EdgeCurve {
     return starts;
   }
 
-  /// Moves in each step to the nearest point of the tangent, and halves the step until the distance
-  /// decreases. Ends when the next step is within rounding. Returns nothing if it does not converge.
+  /// Steps towards the point of the tangent that is nearest to p. Halves each step until the distance to p
+  /// does not increase. Ends when the next step is within rounding. Returns nothing if the descent does not
+  /// converge.
   std::optional<Point> descend(double at, const gp_Pnt& p) const {
     using namespace descent;
     const double scale = p.XYZ().Modulus() + p.Distance(curve_.Value(at));
@@ -182,8 +184,8 @@ class EdgeCurve {
     return best;
   }
 
-  // `reach_` is this many times the largest distance found between a chord and its part of the edge: twice
-  // that distance, and a margin because only a few points of the part are measured.
+  // `reach_` is this many times the largest distance found between a chord and its part of the edge. Twice
+  // that distance would be enough; the rest is a margin, because only a few points of each part are measured.
   static constexpr double chords_apart = 3;
 
   BRepAdaptor_Curve curve_;
@@ -235,8 +237,8 @@ class FaceSurface {
     std::array<double, 2> uv;
     Point point;
   };
-  /// Searches the triangles in the nearest boxes first, then all triangles whose boxes are as near as the
-  /// best of these. (Boost's iterator over boxes by distance sorts its queue again at each step.)
+  /// Searches the triangles in the nearest boxes first, then all triangles whose boxes may be nearer than the
+  /// best point of these. (Boost's iterator over boxes by distance sorts its queue again at each step.)
   std::optional<Start> start_near(const Point& p) const {
     std::optional<Start> start;
     double least = INFINITY;
@@ -263,7 +265,7 @@ class FaceSurface {
     return start;
   }
 
-  /// Steps from the nearest point of the tessellation; if that does not converge, searches globally.
+  /// Descends from the nearest point of the tessellation; if that does not converge, searches globally.
   std::optional<Point> from_triangle(const Point& p) const {
     const std::optional<Start> start = start_near(p);
     if (!start) return std::nullopt;
@@ -277,8 +279,9 @@ class FaceSurface {
     return best;
   }
 
-  /// Moves in each step to the nearest point of the tangent plane, and halves the step until the distance
-  /// decreases. Ends when the next step is within rounding. Returns nothing if it does not converge.
+  /// Steps towards the point of the tangent plane that is nearest to p. Halves each step until the distance
+  /// to p does not increase. Ends when the next step is within rounding. Returns nothing if the descent does
+  /// not converge.
   std::optional<Point> descend(std::array<double, 2> uv, const gp_Pnt& p) const {
     using namespace descent;
     const double scale = p.XYZ().Modulus() + p.Distance(surface_.Value(uv[0], uv[1]));
@@ -304,7 +307,8 @@ class FaceSurface {
   }
 
   /// Returns the parameters, within the face's bounds, of the point of the tangent plane at `uv` that is
-  /// nearest to a place; `d` leads from the surface's point at `uv` to that place.
+  /// nearest to a place. The vector `d` leads from the surface's point at `uv` to that place; `du` and `dv`
+  /// are the surface's derivatives there.
   std::array<double, 2> tangent_step(const std::array<double, 2>& uv, const gp_Vec& d, const gp_Vec& du,
                                      const gp_Vec& dv) const {
     const double e = du.Dot(du), f = du.Dot(dv), g = dv.Dot(dv), a = d.Dot(du), b = d.Dot(dv);
@@ -316,7 +320,7 @@ class FaceSurface {
       next[0] += a / e;
     else if (g > 0)
       next[1] += b / g;
-    // On a bound of one parameter only the other one is free.
+    // If one parameter is moved to its bound, choose the best value of the other one.
     const double u = std::clamp(next[0], surface_.FirstUParameter(), surface_.LastUParameter());
     if (u != next[0] && g > 0) next = {u, uv[1] + (b - f * (u - uv[0])) / g};
     const double v = std::clamp(next[1], surface_.FirstVParameter(), surface_.LastVParameter());
@@ -327,7 +331,7 @@ class FaceSurface {
     return next;
   }
 
-  static constexpr double flat = 1e-14;  // relative to e * g: determinant of tangents that are parallel
+  static constexpr double flat = 1e-14;  // largest determinant of parallel tangents, relative to e * g
 
   BRepAdaptor_Surface surface_;
   const Samples& samples_;

@@ -23,7 +23,7 @@ class NearestOnShape {
 
  private:
   const Tessellation& tessellation_;
-  // Both are built on first use.
+  // By number; filled on first use.
   mutable std::map<int, std::vector<std::unique_ptr<EdgeCurve>>> curves_;
   mutable std::map<int, std::vector<std::unique_ptr<FaceSurface>>> surfaces_;
 };

@@ -26,7 +26,8 @@ using Ends = std::array<Index, 2>;
 
 Ends sorted(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
 
-/// Counts the uses of chords. Crossing a chord that is used an even number of times does not change the side.
+/// Counts how often each chord occurs. Crossing a chord that occurs an even number of times does not change
+/// the side.
 std::map<Ends, int> uses_of(const std::vector<Ends>& chords) {
   std::map<Ends, int> uses;
   for (const auto& [a, b] : chords) ++uses[sorted(a, b)];

@@ -14,9 +14,9 @@ struct CadModel::Parts {
   double diagonal = 0;
   Topology topology;
   Tessellation tessellation;
-  double deflection = 0;                     ///< deflection of this tessellation
-  std::unique_ptr<FaceIntegrals> integrals;  ///< made when measures are asked for
-  std::unique_ptr<NearestOnShape> exact;     ///< nearest points, by means of this tessellation
+  double deflection = 0;                     ///< deflection of `tessellation`, absolute
+  std::unique_ptr<FaceIntegrals> integrals;  ///< null until measures are asked for
+  std::unique_ptr<NearestOnShape> exact;     ///< search for nearest points; it refers to `tessellation`
 };
 
 }  // namespace collarmesh::brep

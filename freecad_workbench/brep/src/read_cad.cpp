@@ -89,8 +89,7 @@ CadLabels labels_of(const STEPControl_Reader& reader, const TopoDS_Shape& shape)
   }
 }
 
-/// Mends faces of spheres. A failure of OpenCASCADE ends this without an error, because the shape can be
-/// used.
+/// Mends faces of spheres. Ignores a failure of OpenCASCADE, because the shape can be used without this.
 void mend(const STEPControl_Reader& reader, const TopoDS_Shape& shape) {
   try {
     mend_sphere_sides(reader, shape);

@@ -39,7 +39,8 @@ Sewn sewn_within(double gap, const TopoDS_Shape& shape) {
   return sewn;
 }
 
-/// Sews with the smallest gap that leaves the fewest edges open. Returns no shape if sewing fails.
+/// Sews with the gap that leaves the fewest edges open, and of equal ones with the smallest. Returns no shape
+/// if sewing fails.
 Sewn sewn(const TopoDS_Shape& shape) {
   Sewn best;
   const double diagonal = rough_diagonal(shape);
@@ -64,7 +65,8 @@ TopoDS_Shell shell_of(const TopoDS_Shape& face) {
   return shell;
 }
 
-/// Returns the shells of sewn faces. A face without neighbours, such as a sphere, has none and gets one.
+/// Returns the shells of sewn faces. A face without neighbours, such as a sphere, belongs to no shell and
+/// gets its own.
 std::vector<TopoDS_Shell> shells_of(const TopoDS_Shape& sewn) {
   std::vector<TopoDS_Shell> shells;
   for (const TopoDS_Shape& shell : subshapes(sewn, TopAbs_SHELL)) shells.push_back(TopoDS::Shell(shell));
@@ -81,7 +83,7 @@ TopoDS_Solid solid_of(const std::vector<TopoDS_Shell>& shells) {
   return solid;
 }
 
-/// Keeps all faces, sewn or, if sewing failed, unsewn, as an open solid.
+/// Keeps all faces as one open solid: the sewn faces or, if sewing failed, the original ones.
 void keep_open(const Sewn& sewn, const std::string& file, Topology& topology) {
   Topology::Solid open;
   open.shape = sewn.shape.IsNull() ? topology.all : sewn.shape;
@@ -103,8 +105,8 @@ bool nearly_closed(const TopoDS_Shape& shell) {
   return 2 * open_edges(shell).size() < subshapes(shell, TopAbs_EDGE).size();
 }
 
-/// Makes solids of closed shells, and open solids of nearly closed ones. Returns how many faces the other
-/// shells have.
+/// Makes solids of closed shells, and open solids of nearly closed ones. Returns the number of faces in the
+/// other shells, which are left out.
 std::size_t make_solids(const std::vector<TopoDS_Shell>& shells, Topology& topology) {
   std::size_t left_out = 0;
   for (const TopoDS_Shell& shell : shells) {
@@ -123,7 +125,7 @@ std::size_t make_solids(const std::vector<TopoDS_Shell>& shells, Topology& topol
   return left_out;
 }
 
-/// Returns the solid that sewing makes of an open one; the open one if sewing does not close it.
+/// Sews the faces of an open solid. Returns the closed solid, or the open one if sewing does not close it.
 TopoDS_Shape closed(const Topology::Solid& open, const std::string& file, Topology& topology,
                     std::vector<Sewn>& sewings) {
   const Sewn result = sewn(open.shape);

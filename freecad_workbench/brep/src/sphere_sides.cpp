@@ -35,7 +35,7 @@ namespace collarmesh::brep {
 
 namespace {
 
-/// By face: whether it has the orientation of its surface in the file.
+/// By face: whether its orientation in the file is that of its surface.
 using Senses = std::map<const TopoDS_TShape*, bool>;
 
 Senses senses_of(const STEPControl_Reader& reader) {
@@ -58,7 +58,7 @@ std::vector<TopoDS_Face> faces_in_shell(const TopoDS_Shape& shell) {
   return faces;
 }
 
-/// Returns the direction in which a face uses an edge; nothing if it uses it in both or not at all.
+/// Returns the direction in which a face uses an edge; nothing if it uses the edge twice or not at all.
 std::optional<TopAbs_Orientation> direction_of(const TopoDS_Edge& edge, const TopoDS_Face& face) {
   std::optional<TopAbs_Orientation> direction;
   for (TopExp_Explorer side(face, TopAbs_EDGE); side.More(); side.Next()) {
@@ -76,16 +76,16 @@ bool is_sphere_between_poles(const TopoDS_Face& face) {
   return poles == 2 && BRepAdaptor_Surface(face, false).GetType() == GeomAbs_Sphere;
 }
 
-/// Returns the sphere of a face, turned about its axis so that the seam is midway between two longitudes of
-/// the face (radians).
+/// Returns the sphere of a face, turned about its axis so that its seam is midway between the longitudes
+/// `from` and `to` (radians), which bound the face.
 Handle(Geom_SphericalSurface) with_seam_amid(const TopoDS_Face& face, double from, double to) {
   gp_Sphere sphere = BRepAdaptor_Surface(face, false).Sphere();
   sphere.Rotate(gp_Ax1(sphere.Location(), sphere.Position().Direction()), 0.5 * (from + to));
   return new Geom_SphericalSurface(sphere);
 }
 
-/// Returns the face on the other side of the outline, which uses its edges in the same directions; a null
-/// face if that fails.
+/// Returns the face on the other side of the given face's outline. It uses the edges in the same directions.
+/// Returns a null face if it cannot be made.
 TopoDS_Face other_side(const TopoDS_Face& face) {
   constexpr double slack = 1e-6;  // radians by which both sides together may miss a full turn
   double from = 0, to = 0, low = 0, high = 0;
@@ -149,8 +149,8 @@ void refill(const TopoDS_Shape& shell, const std::vector<TopoDS_Face>& before,
   bare.Closed(closed);
 }
 
-/// Returns the spherical faces with both poles that, unlike most faces of the shell, are oriented against the
-/// file.
+/// Returns the indices of spherical faces with both poles whose orientation, unlike that of most faces of the
+/// shell, is the opposite of the file's.
 std::vector<std::size_t> turned_spheres(const TopoDS_Shape& shell, const Senses& senses) {
   const std::vector<TopoDS_Face> faces = faces_in_shell(shell);
   std::vector<std::size_t> turned, kept;
@@ -160,7 +160,7 @@ std::vector<std::size_t> turned_spheres(const TopoDS_Shape& shell, const Senses&
     const bool same = faces[f].Orientation() == TopAbs_FORWARD;
     (same == sense->second ? kept : turned).push_back(f);
   }
-  if (turned.size() > kept.size()) std::swap(turned, kept);  // the shell may have been turned as a whole
+  if (turned.size() > kept.size()) std::swap(turned, kept);  // the shell may be reversed as a whole
   if (turned.size() == kept.size()) return {};
   std::erase_if(turned, [&](std::size_t f) { return !is_sphere_between_poles(faces[f]); });
   return turned;
@@ -189,7 +189,8 @@ void mend_sphere_sides(const STEPControl_Reader& reader, const TopoDS_Shape& sha
     for (const TopoDS_Face& face : faces_in_shell(shell)) ++uses[face.TShape().get()];
   for (const TopoDS_Shape& shell : shells)
     for (const std::size_t face : turned_spheres(shell, senses))
-      // Shells that share a face use it in two orientations, of which only one would be mended.
+      // Skip faces that two shells share: they use the face in two orientations, and only one of them would
+      // be mended.
       if (uses[faces_in_shell(shell)[face].TShape().get()] == 1) take_other_side(shell, face);
 }
 

@@ -50,7 +50,7 @@ std::string text_of(const Handle(TCollection_HAsciiString) & text) {
 /// Returns whether OpenCASCADE's writer made up the name, as it does for products without a name.
 bool is_of_writer(const std::string& name) { return name.starts_with("Open CASCADE STEP translator"); }
 
-/// Returns the depth of the first solid in a shape.
+/// Returns the number of levels from a shape down to its first solid.
 std::size_t depth_of(const TopoDS_Shape& shape) {
   std::size_t depth = 0;
   TopoDS_Shape inner = shape;
@@ -78,8 +78,8 @@ class StepNames {
       if (product.own > 0) ++products_of_solids_;
   }
 
-  /// Returns the name of the innermost product. If it has several solids, the solid's name follows; that name
-  /// stands alone if no other product has solids.
+  /// Returns the name of the innermost product that contains a solid. If this product has several solids, the
+  /// solid's own name follows, or stands alone if no other product has solids.
   std::string find(const TopoDS_Shape& solid) const {
     const auto found = own_.find(geometry_of(solid));
     std::string own = found == own_.end() ? std::string() : found->second;
@@ -163,7 +163,8 @@ std::optional<Colour> colour_of(const STEPConstruct_Styles& styles,
 
 using ByGeometry = std::map<Geometry, Colour>;
 
-/// Assigns the styles' colours to the sub-shapes of one kind; colours of smaller shapes take precedence.
+/// Returns the colours of sub-shapes of one kind. A later style replaces an earlier one, so larger shapes
+/// must come first.
 ByGeometry colours_of(const std::vector<std::pair<TopoDS_Shape, Colour>>& styled, TopAbs_ShapeEnum kind) {
   ByGeometry colours;
   for (const auto& [shape, colour] : styled)

@@ -87,7 +87,7 @@ class Tessellator {
   }
 
  private:
-  static constexpr double straight_ = 1e-13;  // rounding, relative to the diagonal
+  static constexpr double straight_ = 1e-13;  // rounding of distances, relative to the diagonal
   static constexpr double seam_gap_ = 1e-3;   // largest distance in space, relative to the diagonal,
                                               // between two ends of edges that are one node
   static constexpr double flat_ = 1e-3;       // largest height of a flat triangle, relative to the deflection
@@ -138,7 +138,7 @@ class Tessellator {
       if (corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0])
         triangles.push_back(corners);
     }
-    if (sides_off(triangles, chords_of(face)) > 0) {  // it has holes, or covers too much
+    if (sides_off(triangles, chords_of(face)) > 0) {  // the triangles have holes or cover too much
       triangles.clear();
       points_.resize(first_inner);
       result_.faces[topology_.number(face)].pop_back();
@@ -150,7 +150,7 @@ class Tessellator {
     return true;
   }
 
-  /// Returns whether a face has triangles whose points along its edges are those of earlier faces.
+  /// Returns whether a face has triangles, with as many points on each edge as the faces added before.
   bool fits_neighbours(const TopoDS_Face& face, const Handle(Poly_Triangulation) & triangulation,
                        const TopLoc_Location& location) const {
     if (triangulation.IsNull() || triangulation->NbTriangles() == 0) return false;
@@ -167,7 +167,7 @@ class Tessellator {
     return true;
   }
 
-  /// Returns the chords around a face; edges inside it have none.
+  /// Returns the chords of the edges around a face, without those of edges inside it.
   std::vector<std::array<Index, 2>> chords_of(const TopoDS_Face& face) const {
     std::vector<std::array<Index, 2>> chords;
     for (TopExp_Explorer edge(face, TopAbs_EDGE); edge.More(); edge.Next()) {
@@ -178,7 +178,7 @@ class Tessellator {
     return chords;
   }
 
-  /// Records which of the shape's points are the triangulation's nodes on an edge.
+  /// Sets `at`, which maps nodes of the triangulation to points of the shape, for the nodes on an edge.
   void add_edge(const TopoDS_Edge& edge, const Handle(Poly_Triangulation) & triangulation,
                 const TopLoc_Location& location, std::vector<Index>& at) {
     const Handle(Poly_PolygonOnTriangulation) polygon =
@@ -191,7 +191,7 @@ class Tessellator {
   }
 
   /// Returns the points on an edge in the order of its parameter; for a degenerate edge, its vertex. Divides
-  /// the edge at the parameters if that was not done before.
+  /// the edge at the parameters if it is not divided yet.
   const std::vector<Index>& points_of(const TopoDS_Edge& edge, const std::vector<double>& parameters) {
     const std::size_t index = slot(edges_.FindIndex(edge));
     std::vector<Index>& points = edge_points_[index];
@@ -231,7 +231,7 @@ class Tessellator {
     points_of(edge, parameters);
   }
 
-  /// Triangulates a face in another way (see mend_face). A note tells which.
+  /// Triangulates a face by one of the ways of `mend_face`, and adds a note that tells which one.
   void mend(const TopoDS_Face& face, int index) {
     for (TopExp_Explorer edge(face, TopAbs_EDGE); edge.More(); edge.Next())
       cut_edge(TopoDS::Edge(edge.Current()));
@@ -258,10 +258,11 @@ class Tessellator {
 
   void tell(const TopoDS_Face& face, const MendedFace& mended, bool left_out) {
     const std::string done =
-        left_out ? "it is left out; its outline is open or crosses itself, or it has no area"
-                 : fmt::format(
-                       "it was triangulated {}{}", mended.how,
-                       mended.fits ? "" : ", and the points on its border are not those of its neighbours");
+        left_out
+            ? "it is left out; its outline is open or crosses itself, or it has no area"
+            : fmt::format(
+                  "it was triangulated {}{}", mended.how,
+                  mended.fits ? "" : ", but the points on its border differ from those of its neighbours");
     result_.notes.push_back(
         fmt::format("{}: {} around {} cannot be cut into triangles together with its neighbours; {}", file_,
                     topology_.name(face), text(place_of(face)), done));
@@ -310,7 +311,7 @@ class Tessellator {
     return outline;
   }
 
-  /// Returns whether two parameters of one place lie on the same side of every seam: in each periodic or
+  /// Returns whether two parameter pairs of one place lie on the same side of every seam: in each periodic or
   /// closed direction they differ by at most 1% of its length. Other directions are not compared.
   static bool near_in_plane(const BRepAdaptor_Surface& surface, const std::array<double, 2>& a,
                             const std::array<double, 2>& b) {
@@ -407,8 +408,8 @@ class Tessellator {
   double area_of(const std::array<Index, 3>& t) const {
     return 0.5 * norm(cross(points_[t[1]] - points_[t[0]], points_[t[2]] - points_[t[0]]));
   }
-  /// Returns the sum of the areas of the triangles that a point forms with the sides. It equals the
-  /// triangle's area if the point lies inside.
+  /// Returns the sum of the areas of the triangles that a point forms with the sides of a triangle. It equals
+  /// the triangle's area if the point lies inside.
   double area_with(const std::array<Index, 3>& t, Index p) const {
     return area_of({t[0], t[1], p}) + area_of({t[1], t[2], p}) + area_of({t[2], t[0], p});
   }
@@ -492,7 +493,8 @@ class Tessellator {
     }
   }
 
-  /// Marks a vertex where a surface ends in a point, such as a cone's apex, but not the poles of a sphere.
+  /// Makes the vertex of a degenerate edge a feature if the surface ends there in a point, such as a cone's
+  /// apex; the poles of a sphere are no features.
   void mark_apex(const TopoDS_Edge& edge, const TopTools_ListOfShape& faces) {
     for (const TopoDS_Shape& face : faces)
       if (BRepAdaptor_Surface(TopoDS::Face(face), false).GetType() != GeomAbs_Sphere)

@@ -11,12 +11,12 @@
 
 namespace collarmesh::brep {
 
-/// Points of an edge with the parameters of its curve, or of a face with those of its surface.
+/// Points of an edge with their parameters on its curve, or of a face with their parameters on its surface.
 struct Samples {
   TopoDS_Shape shape;
   std::vector<Point> points;
   std::vector<std::array<double, 2>> parameters;  ///< for an edge only the first of each pair counts
-  std::vector<std::array<Index, 3>> triangles;    ///< for a face: indices of points; seams have theirs twice
+  std::vector<std::array<Index, 3>> triangles;    ///< for a face: indices of points; seam points occur twice
 };
 
 struct Tessellation {
@@ -24,13 +24,13 @@ struct Tessellation {
   /// any.
   std::vector<PolygonSoup> soups;
   std::map<int, std::vector<Samples>> edges, faces;  ///< by number
-  TopTools_DataMapOfShapeReal lengths, areas;        ///< measures of the chords of feature edges, and of the
-                                                     ///< triangles
-  std::vector<std::string> notes;  ///< notes on faces that were triangulated in another way, or not at all
+  TopTools_DataMapOfShapeReal lengths, areas;        ///< lengths of the chords of each feature edge, and
+                                                     ///< areas of the triangles of each face
+  std::vector<std::string> notes;  ///< notes on mended faces, and on faces and free parts that are left out
 };
 
-/// Triangulates all faces; neighbours share the points of their edges, except for faces that notes name.
-/// Throws PlcError if no face can be triangulated. Precondition: the deflection is above 0.
+/// Triangulates all faces. Neighbouring faces share the points of their edges, except for faces that notes
+/// name. Throws PlcError if no face can be triangulated. Precondition: the deflection is above 0.
 Tessellation tessellate(const Topology& topology, const std::string& file,
                         const TessellationOptions& options);
 

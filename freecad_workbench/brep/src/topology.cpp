@@ -64,7 +64,8 @@ std::vector<TopoDS_Shape> internal_faces_of(const TopoDS_Shape& shape) {
   return internal;
 }
 
-/// Returns whether an edge has one face where a closed surface would have two.
+/// Returns whether an edge borders only one face, once; inner edges of a face and degenerate edges do not
+/// count.
 bool borders_one_face(const TopoDS_Shape& edge, const TopTools_ListOfShape& faces) {
   if (BRep_Tool::Degenerated(TopoDS::Edge(edge))) return false;
   int uses = 0;
@@ -198,7 +199,7 @@ std::string Topology::name(const TopoDS_Shape& shape) const {
 
 namespace {
 
-/// Keeps the edges of a shape of edges alone, for meshes of lines.
+/// Makes free parts of the edges of a shape without faces, for meshes of lines. Fails if there is no edge.
 void take_wires(const TopoDS_Shape& shape, const std::string& file, Topology& topology) {
   for (const TopoDS_Shape& edge : subshapes(shape, TopAbs_EDGE))
     if (!BRep_Tool::Degenerated(TopoDS::Edge(edge)))

@@ -16,7 +16,7 @@
 
 namespace collarmesh::brep {
 
-/// The sub-shapes that become features, and their numbers.
+/// The solids of a shape, the other sub-shapes that become features, and the numbers of all.
 struct Topology {
   struct Solid {
     TopoDS_Shape shape;
@@ -29,17 +29,17 @@ struct Topology {
   struct FreePart {
     TopoDS_Shape shape;
     int number = 0;
-    double clearance = 0;  ///< distance from the faces that it does not end on, or from its middle to
-                           ///< curved faces, if that is less
+    double clearance = 0;  ///< the smaller of two distances: to the faces that it does not end on, and
+                           ///< from its middle to curved faces
   };
 
-  std::vector<Solid> solids;                 ///< parts of one solid have the same number
+  std::vector<Solid> solids;                 ///< pieces of one solid have the same number
   std::vector<TopoDS_Shape> internal_faces;  ///< faces that belong to no solid, or lie inside one
   std::vector<FreePart> free_parts;          ///< parts that lie inside a solid, or all edges of a shape of
                                              ///< edges alone
   TopoDS_Shape all;                          ///< the shape to tessellate
   TopTools_DataMapOfShapeInteger numbers;    ///< numbers of solids, faces, edges and vertices
-  std::vector<std::pair<TopoDS_Shape, int>> kept_numbers;  ///< numbers of free parts, for steps without them
+  std::vector<std::pair<TopoDS_Shape, int>> kept_numbers;  ///< numbers of free parts, which no step may reuse
   std::vector<std::pair<Tag, Tag>> replaced_faces;         ///< pairs: the number that is gone, and the number
                                                            ///< that replaces it
   std::vector<std::string> notes;
@@ -47,7 +47,7 @@ struct Topology {
   std::string open_text;  ///< text on which solids are open, at which edges; empty: none
 
   int number(const TopoDS_Shape& shape) const { return numbers.IsBound(shape) ? numbers.Find(shape) : 0; }
-  /// Keeps the numbers of these parts and of their vertices from being used for others.
+  /// Reserves the numbers of these parts and of their vertices.
   void keep_numbers(const std::vector<TopoDS_Shape>& parts);
   /// Returns a name such as "Face7".
   std::string name(const TopoDS_Shape& shape) const;
@@ -55,9 +55,9 @@ struct Topology {
 
 inline bool is_edge(const TopoDS_Shape& part) { return part.ShapeType() == TopAbs_EDGE; }
 
-/// Finds the solids of a shape. Sews faces if there is no solid or one is open. Then gives touching solids
-/// common faces. A shape of edges alone keeps these as free parts. Throws PlcError for a shape without faces
-/// and edges.
+/// Finds the solids of a shape. Sews faces if there is no solid or one is open. Then makes touching solids
+/// share faces. The edges of a shape without faces become free parts. Throws PlcError for a shape without
+/// faces and edges.
 Topology find_topology(const TopoDS_Shape& shape, const std::string& file, const CadOptions& options);
 
 /// Returns the sub-shapes of one kind, each once, in the order of their numbers.
@@ -75,13 +75,13 @@ std::vector<TopoDS_Shape> boundary_of(const TopoDS_Shape& solid);
 /// A function that returns the pieces of a sub-shape: the sub-shape itself, parts of it, or nothing.
 using PartsOf = std::function<TopTools_ListOfShape(const TopoDS_Shape&)>;
 
-/// Numbers the parts that the sub-shapes of `before` became in `after`. A part that several sub-shapes became
-/// gets the smallest of their numbers; new parts get the next free numbers. Records in `replaced_faces` the
-/// numbers of faces that are gone.
+/// Numbers the sub-shapes of `after`. A part of a sub-shape of `before` gets its number, or the smallest of
+/// their numbers if it is part of several; other sub-shapes get the next free numbers. Records in
+/// `replaced_faces` the numbers of faces that are gone.
 void carry_numbers(const TopoDS_Shape& before, const TopoDS_Shape& after, const PartsOf& parts_of,
                    Topology& topology);
 
-/// Returns the edges at which the faces of a shape are open, each with a face there.
+/// Returns the edges that border only one face of a shape, each with that face.
 std::vector<std::pair<TopoDS_Shape, TopoDS_Shape>> open_edges(const TopoDS_Shape& shape);
 
 /// Describes open edges: "4 edges border one face only: Edge2 of Face1 at (0, 1, 2), ...".

@@ -12,12 +12,12 @@ from .program import MesherError, Settings, find_program
 
 
 def mesh(shape_or_object, document=None, analysis=None, name="FEMMeshCollarmesh", **options):
-    """Mesh a shape, or an object that has one, and return the mesh object; blocks until it is there.
+    """Mesh a shape, or an object that has one, and return the mesh object; wait until the mesh is made.
 
-    A shape without an object becomes a `Part::Feature`. `document` defaults to the object's or the active
-    one, else a new one is made; the mesh object is added to `analysis` if one is given.
+    A shape without an object becomes a `Part::Feature`. `document` defaults to the object's document, else to
+    the active one, else to a new one. The mesh object is added to `analysis` if one is given.
     `options` are the fields of `Settings`: `size` (target edge length, mm), `size_min`, `radius_edge`, ...
-    Raises MesherError, with what is wrong and where, and adds nothing then.
+    If it fails, raises MesherError, which says what is wrong and where, and adds nothing to the document.
     """
     from . import mesh_object
 
@@ -25,19 +25,19 @@ def mesh(shape_or_object, document=None, analysis=None, name="FEMMeshCollarmesh"
 
 
 def add_size(mesh_object, kind, size=0):
-    """Ask for another size in a part of a mesh, and return the object for it, whose properties say where.
+    """Ask for another size in a region of a mesh. Return the size object, whose properties set this region.
 
     `kind`: Sphere, Box, Cylinder (in the middle of the part at first) or Distance (from the faces and edges in its
-    `References`, up to `Within`). `size`: target edge length, mm; 0: a quarter of the mesh's own. It takes effect
-    when the mesh is made again."""
+    `References`, up to `Within`). `size`: target edge length, mm; 0: a quarter of the mesh's own. The size takes
+    effect when the mesh is made again."""
     from . import size_objects
 
     return size_objects.make(mesh_object, kind, size)
 
 
 def add_layers(mesh_object, *faces):
-    """Ask for boundary layers on these faces of a mesh, "Face1", ..., or on all outer faces, and return the object for
-    them, whose properties say how high they are. They are made when the mesh is made again."""
+    """Ask for boundary layers on these faces of a mesh ("Face1", ...) or, without any, on all outer faces. Return the
+    object of the layers, whose properties set their heights. The layers are made when the mesh is made again."""
     from . import compatibility, layer_objects
 
     layers = layer_objects.make(mesh_object)
@@ -46,8 +46,8 @@ def add_layers(mesh_object, *faces):
 
 
 def remesh(mesh_object):
-    """Make the mesh of a mesh object anew and wait; returns the program's report. Raises MesherError, with what is
-    wrong and where; the object keeps its mesh then."""
+    """Make the mesh of a mesh object again, wait, and return the program's report. If it fails, raises MesherError,
+    which says what is wrong and where, and the object keeps its mesh."""
     from . import mesh_object as objects
 
     return objects.remesh(mesh_object)
@@ -55,11 +55,11 @@ def remesh(mesh_object):
 
 def refine_by_result(mesh_object, elements=None, error=None):
     """Adapt the mesh to the error of the stresses in its analysis' result, finer where the error is large and coarser
-    where it is small, and wait; returns the program's report.
+    where it is small. Wait, and return the program's report.
 
     `elements`: the number of elements to aim for; or `error`: the error of the next result, relative to the energy norm
     (0 to 1). Edges become 0.25 to 2 times as long, so large changes take several steps, each with a result of its own.
-    Raises MesherError if there is no result of this mesh, and as `remesh`."""
+    Raises MesherError if there is no result of this mesh, and like `remesh`."""
     from . import result_refinement
 
     return result_refinement.refine(mesh_object, elements, error)
@@ -73,8 +73,8 @@ def meshed_object(mesh_object):
 
 
 def references_to_groups(mesh_object, *names):
-    """Return the `References` of constraints on groups of faces of a triangle mesh's mesh; the names are those of the
-    groups, as in "patch_2" and "Segment1"."""
+    """Return the `References` of a constraint on groups of faces. The mesh must have been made from a triangle mesh.
+    `names` are names of its groups, such as "patch_2" or "Segment1"."""
     from . import constraint_faces
 
     return constraint_faces.references(mesh_object, names)

@@ -21,7 +21,7 @@ class Row:
     text: str
     unit: str = ""  # "mm" or "deg"
     zero: str = ""  # text shown for 0
-    choices: tuple = ()  # texts by value: numbers from 0, or the property's own words
+    choices: tuple = ()  # texts: in the order of the values 0, 1, ..., or by the property's own words
     tip: str = ""  # tool tip; empty: the property's text, translated
 
 
@@ -113,7 +113,7 @@ class AdvancedSection(QtGui.QWidget):
         self.findChild(QtGui.QCheckBox, "collarmesh_" + name).setChecked(True)
 
     def apply_to(self, settings):
-        """Copies the values of the fields to Settings, as far as they can be read."""
+        """Copies the values of the fields to Settings, except values that cannot be read."""
         for _, name, field, *_ in mesh_properties.PROPERTIES:
             if name in self._readers:
                 try:
@@ -204,7 +204,7 @@ def narrow_combo():
 
 
 def _ratio(text, zero):
-    """Reads a number without unit that is not negative; empty text is 0 if 0 has a meaning."""
+    """Reads a number without unit that is not negative. Empty text is 0 if the field has a text for 0 (`zero`)."""
     if not text.strip():
         if zero:
             return 0.0

@@ -18,14 +18,16 @@ GROWTH = 1  # growth of sizes away from finer faces and edges, unless the user g
 
 @dataclasses.dataclass
 class Surface:
-    """Separate triangles: places, shape (3 n, 3), and the number of the face of each corner, 0 for none."""
+    """Separate triangles: the places of their corners, shape (3 n, 3), and for each corner the number of its face, 0
+    for none."""
 
     places: numpy.ndarray
     faces: numpy.ndarray
 
 
 def surface_of(part):
-    """Returns the surface of an object, in triangles that are small enough for colours."""
+    """Returns the surface of an object, in triangles that are small enough to show sizes as colours of their
+    corners."""
     mesh, diagonal = inputs.triangles_of(part), extent.diagonal(part)
     if mesh is not None:
         triangles = [(0, *mesh.Topology)]
@@ -42,7 +44,7 @@ def surface_of(part):
 
 
 def subdivided(triangles, faces, longest):
-    """Halves triangles at their longest edge while the edge is too long and there are not too many triangles.
+    """Halves triangles at their longest edge while it is longer than `longest` and there are at most MOST triangles.
     Returns their corners, shape (n, 3, 3), and the numbers of their faces."""
     done = []
     while len(triangles):
@@ -134,8 +136,8 @@ def _to_subshape(surface, shape, kind, number):
 
 
 def _to_points(places, points):
-    """Returns for each place the distance from the nearest one of at most POINTS of the points. Works in blocks to
-    bound memory."""
+    """Returns for each place the distance from the nearest point. If there are many points, uses at most POINTS of
+    them. Works in blocks to bound memory."""
     points = points[:: max(1, math.ceil(len(points) / POINTS))]
     if not len(points):
         return numpy.full(len(places), numpy.inf)
@@ -165,8 +167,8 @@ def _of_curvature(surface, shape, count):
 
 
 def _parameters(face):
-    """Returns the parameters of places on a face, away from the ends of its parameter range, where some
-    surfaces have no curvature."""
+    """Yields the parameters of places on a face, away from the ends of its parameter range, at which some surfaces have
+    no curvature."""
     u0, u1, v0, v1 = face.ParameterRange
     for i in range(SAMPLES):
         for j in range(SAMPLES):

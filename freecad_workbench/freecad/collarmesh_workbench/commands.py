@@ -32,7 +32,7 @@ class Command:
     """The command of a button. `create` makes an object for the selection, which is then edited in its panel."""
 
     icon, menu_text, tool_tip = "", "", ""
-    # Creation and first edit are a single undo step, which "Cancel" in the panel undoes.
+    # Whether creation and first edit are a single undo step, which "Cancel" in the panel undoes.
     panel_commits = False
 
     def GetResources(self):
@@ -99,8 +99,8 @@ class MeshFromShape(Command):
 
 
 def mesh_of(part):
-    """Returns our mesh object for a part, in the active analysis if there is one; None if there is no such
-    object."""
+    """Returns our mesh object for a part, from the active analysis or, if no analysis is active, from the part's
+    document; None if there is none."""
     import FemGui
 
     analysis = FemGui.getActiveAnalysis()
@@ -135,7 +135,8 @@ class Group(Refinement):
 
 
 class Addition(Command):
-    """Adds an object to the selected mesh, or to the mesh of the selected part, or to the only mesh in the document."""
+    """A command that adds an object to the selected mesh, to the mesh of the selected part or, if nothing is selected,
+    to the only mesh in the document."""
 
     panel_commits = True
 
@@ -174,8 +175,8 @@ class Size(Addition):
 
 
 def middle_of(elements):
-    """Returns the middle of faces and edges; for a hole, a place on its axis. (Boxes around curved faces are
-    larger than the faces.)"""
+    """Returns the middle of faces and edges: the mean of their centres of mass. For a hole it is a place on its axis.
+    (The middle of a box would not do, because boxes around curved faces are larger than the faces.)"""
     extents = [each.Area if each.ShapeType == "Face" else each.Length for each in elements]
     total = sum(extents)
     middle = FreeCAD.Vector()
@@ -185,7 +186,7 @@ def middle_of(elements):
 
 
 class Layers(Addition):
-    """Adds boundary layers on the selected faces; without any, on all outer faces."""
+    """A command that adds boundary layers on the selected faces or, without any, on all outer faces."""
 
     icon = layers_view.ICON
     menu_text = mark("collarmesh", "Boundary layers")
@@ -201,8 +202,8 @@ class Layers(Addition):
 
 
 class TakeOver(Command):
-    """Takes over mesh objects of other meshers. Also needed for Netgen's objects, which have no context menu
-    of their own before FreeCAD 1.0."""
+    """A command that takes over mesh objects of other meshers. Netgen's objects need it, because they have no context
+    menu of their own before FreeCAD 1.0."""
 
     icon = os.path.join(os.path.dirname(ICON), "take_over.svg")
     menu_text = mark("collarmesh", "Take over by collarmesh")
@@ -219,8 +220,8 @@ class TakeOver(Command):
 
 
 class RefineByResult(Command):
-    """Opens the panel of a mesh at the fields that refine it by the result of its analysis. The mesh or the
-    result may be selected; neither need be if there is only one such mesh."""
+    """A command that opens the panel of a mesh at the fields that refine it by the result of its analysis. The mesh or
+    the result may be selected; if only one mesh can be refined, nothing needs to be selected."""
 
     icon = os.path.join(os.path.dirname(ICON), "refine_by_result.svg")
     menu_text = mark("collarmesh", "Refine by result")

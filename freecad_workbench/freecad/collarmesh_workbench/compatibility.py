@@ -35,7 +35,8 @@ class WithProperties(Stateless):
 
 
 def add_mesh_object(document, name):
-    """Adds an empty mesh object with a Python proxy. FreeCAD 1.0 has a base class with the meshed shape."""
+    """Adds an empty mesh object with a Python proxy. FreeCAD 1.0 and later have a base class that links the meshed
+    object."""
     try:
         return document.addObject("Fem::FemMeshShapeBaseObjectPython", name)
     except (RuntimeError, TypeError):
@@ -80,7 +81,7 @@ def is_plain_refinement(obj):
 
 def size_by_place(obj):
     """Converts a refinement by place of FreeCAD 1.1 to one of ours: returns (kind, size, size far away, distance over
-    which the size grows to that, properties); None for other objects."""
+    which the first size grows to the second, properties); None for other objects."""
     kind = type_of(obj)
     if kind == "Fem::MeshDistance":
         between = obj.DistanceMaximum.Value - obj.DistanceMinimum.Value
@@ -113,8 +114,8 @@ _in_transaction = set()  # names of documents with an open transaction
 
 @contextlib.contextmanager
 def transaction(document, name):
-    """Makes the enclosed changes one undo step; an exception undoes them. A nested transaction is part of the
-    outer one. Closes a transaction of FreeCAD's that scripts or deletions have left open."""
+    """Makes the enclosed changes one undo step; an exception undoes them. A nested transaction is part of the outer
+    one. First closes a transaction of FreeCAD's that scripts or deletions have left open."""
     if document.Name in _in_transaction:
         yield
         return
@@ -134,9 +135,9 @@ def transaction(document, name):
 
 
 def write_constraints_on(*finders):
-    """Changes FreeCAD's writers for solvers, which look for the nodes of constraints by place. They then use the nodes
-    of the elements that the first finder with a result returns for (mesh, object, name of a face), and look by place
-    only if all return None."""
+    """Changes how FreeCAD's writers for solvers find the nodes of constraints. Each finder is called with (mesh,
+    object, name of a face) until one returns elements; the writers then use the nodes of these elements. If all return
+    None, they look for nodes by place, as FreeCAD does without this function."""
     by_place, loads_by_place = meshtools.get_femnodes_by_refshape, meshtools.get_force_obj_face_nodeload_table
 
     def elements_of(*reference):
@@ -175,16 +176,15 @@ def write_constraints_on(*finders):
 
 
 def force_of(constraint):
-    """Returns the force in N: from FreeCAD 0.21 on as a quantity, as the property is one and FreeCAD's writer
-    requires it."""
+    """Returns the force in N: a number before FreeCAD 0.21, a quantity from then on, because FreeCAD's writer requires
+    the type of the property."""
     force = constraint.Force
     return FreeCAD.Units.Quantity(force.getValueAs("N")) if hasattr(force, "getValueAs") else force
 
 
 def extend_context_menus(fill):
-    """Adds entries to the context menus of FreeCAD's own mesh objects, by calling `fill(menu, object)`. Their
-    view providers are classes in Python; Netgen's is one from FreeCAD 1.0 on, and has no menu of its own
-    before."""
+    """Adds entries to the context menus of FreeCAD's own mesh objects, by calling `fill(menu, object)`. Their view
+    providers must be classes in Python: Gmsh's always is, Netgen's only from FreeCAD 1.0 on."""
     for module, name in (("view_mesh_gmsh", "VPMeshGmsh"), ("view_mesh_netgen", "VPMeshNetgen")):
         try:
             provider = getattr(importlib.import_module("femviewprovider." + module), name)
@@ -215,7 +215,7 @@ class Manipulator:
         return [{"insert": command, "toolItem": place} for command, place in self.places.items()]
 
     def modifyMenuBar(self):
-        # Each command is put directly after its place, so the last one is put first.
+        # Each command is put directly after its place, so of commands with the same place the last one is put first.
         return [{"insert": command, "menuItem": place, "after": ""} for command, place in reversed(self.places.items())]
 
 

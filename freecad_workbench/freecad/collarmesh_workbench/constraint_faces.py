@@ -1,7 +1,8 @@
 """Faces that can be chosen for constraints on an FEM mesh that was made from a triangle mesh, which has no faces of its
-own to choose. An object has a planar face for each group of faces of the FEM mesh; FEM's panels accept it like a face
-of a part. Face1 belongs to the first group, Face2 to the second one, and so on; groups that are not planar have further
-faces after these. Each face stands for its whole group: a solver gets the nodes of the group."""
+own to choose. A separate object has a planar face for each group of faces of the FEM mesh, and FEM's panels accept
+these like faces of a part. Face1 belongs to the first group, Face2 to the second one, and so on; groups that are not
+planar have further faces after all these. Each face stands for its whole group: a solver gets the nodes of the
+group."""
 
 import FreeCAD
 import numpy
@@ -77,7 +78,7 @@ def references(mesh_object, names):
 
 
 def refresh(mesh_object):
-    """Updates the faces after the mesh was made again, and keeps constraints on the same groups. Returns messages on
+    """Updates the faces after the mesh was made again; constraints stay on their groups. Returns messages on
     constraints whose group is gone."""
     obj = of(mesh_object)
     if obj is None:
@@ -124,7 +125,8 @@ def _groups_of_faces(fem_mesh):
 
 
 def _face_of(groups, name):
-    """Returns the face that a constraint on a group refers to, whichever of the group's faces was chosen."""
+    """Returns the name of a group's first face. Constraints on the group refer to it, whichever of the group's faces
+    was chosen."""
     return f"Face{groups.index(name) + 1}"
 
 
@@ -140,8 +142,8 @@ def _constraints_on(obj):
 
 
 def _has_references(obj):
-    """Returns whether the object has references to sub-shapes, as constraints do; other add-ons may use this
-    name for other properties."""
+    """Returns whether the object has references to sub-shapes, as constraints do. Other add-ons may use the name
+    `References` for properties of another type."""
     return (REFERENCES in obj.PropertiesList
             and obj.getTypeIdOfProperty(REFERENCES).startswith("App::PropertyLinkSubList"))
 
@@ -161,7 +163,7 @@ def elements_of(fem_mesh, obj, name):
 
 
 class _Observer:
-    """Makes each constraint refer to a group once, by its first face."""
+    """An observer that makes each constraint refer to a group once, by the group's first face."""
 
     def slotChangedObject(self, changed, name):
         document = changed.Document

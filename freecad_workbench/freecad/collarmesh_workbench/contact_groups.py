@@ -10,8 +10,8 @@ SIDES = ("_minus", "_plus")  # the program's suffixes for the two sides of a fac
 
 
 def add(shape, fem_mesh, apart):
-    """Gives each face and edge of touching solids its group. In the mesh, common parts are in the group with
-    the smallest number; where solids are kept apart, each side has its own group."""
+    """Gives each face and edge of touching solids its group. The program writes a common part only into the group with
+    the smallest number or, if solids are kept apart (`apart`), into a group for each of its two sides."""
     here = contacts.of(shape)
     owners = _Owners(here, fem_mesh) if apart else None
     for kind, find in (("Face", fem_mesh.getFacesByFace), ("Edge", fem_mesh.getEdgesByEdge)):
@@ -30,8 +30,8 @@ def add(shape, fem_mesh, apart):
 
 
 def elements_of(fem_mesh, obj, name):
-    """Returns the elements of a face, an edge or a solid in a mesh that keeps solids apart, where places cannot tell
-    the nodes of two solids apart. None for other meshes."""
+    """Returns the elements of a face, an edge or a solid in a mesh that keeps solids apart: there, nodes of two solids
+    lie at the same place, so a search by place would mix them. None for other meshes."""
     for mesh_object in filter(mesh_properties.is_ours, compatibility.mesh_objects(obj.Document)):
         part = compatibility.meshed_object(mesh_object)
         if part is not None and up_to_date.is_kept_apart(mesh_object) and mesh_undo.same(mesh_object.FemMesh, fem_mesh):
@@ -50,7 +50,7 @@ class _Owners:
         self._nodes = {}
 
     def own(self, kind, number, elements):
-        """Returns those of the elements whose nodes all belong to one solid of a face or an edge."""
+        """Returns the elements whose nodes all belong to one of the solids that have this face or edge."""
         nodes = [self._nodes_of(solid) for solid in self.here.solids(kind, number)]
         return {each for each in elements if any(set(self.fem_mesh.getElementNodes(each)) <= those for those in nodes)}
 
@@ -62,8 +62,7 @@ class _Owners:
 
 
 def _elements_of_tags(fem_mesh, kind):
-    """Returns the elements by the number of their face or edge in the mesh; both sides of a face are
-    combined."""
+    """Returns the elements of each face or edge, by its number in the mesh; both sides of a face are combined."""
     found = {}
     for name, number in named(fem_mesh).items():
         match = re.fullmatch(rf"{kind}(\d+)({'|'.join(SIDES)})?", name)

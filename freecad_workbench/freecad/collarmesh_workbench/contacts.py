@@ -29,8 +29,8 @@ def of(shape):
 
 
 def in_mesh_numbers(settings, shape):
-    """Returns Settings with the mesh's numbers of faces and edges. A size for a face applies to all faces of the mesh
-    that are parts of it, and so do layers. If no solids touch, none are kept apart."""
+    """Returns Settings in which faces and edges have the mesh's numbers. A size for a face applies to all faces of the
+    mesh that are parts of it, and so do layers. `keep_apart` is False if no solids touch."""
     here = of(shape)
     sizes = {}
     for field, kind in (("face_sizes", "Face"), ("edge_sizes", "Edge")):
@@ -70,7 +70,7 @@ class Contacts:
         self._of_kind = {kind: _ContactsOfKind(shape, kind) for kind in KINDS} if several else {}
 
     def tags(self, kind, number):
-        """Returns the numbers of the parts of Face7 in the mesh."""
+        """Returns the numbers that the parts of Face7 (for "Face" and 7) have in the mesh."""
         return self._of_kind[kind].tags(number) if kind in self._of_kind else [number]
 
     def has_all(self, kind, tag, number):
@@ -126,7 +126,7 @@ class _ContactsOfKind:
 
     @functools.cached_property
     def solids(self):
-        """Returns for each element the solids that it belongs to."""
+        """Returns for each element the set of solids that it belongs to, numbered from 0."""
         members = collections.defaultdict(list)
         for i, solid in enumerate(self.shape.Solids):
             for each in getattr(solid, self.kind + "s"):
@@ -135,7 +135,7 @@ class _ContactsOfKind:
 
     @functools.cached_property
     def boxes(self):
-        """Returns the boxes' lower corners and their negated upper ones."""
+        """Returns a row for each element's box: its lower corner, then its negated upper corner."""
         boxes = [each.BoundBox for each in self.elements]
         return numpy.array([(b.XMin, b.YMin, b.ZMin, -b.XMax, -b.YMax, -b.ZMax) for b in boxes]).reshape(-1, 6)
 
@@ -162,7 +162,7 @@ class _ContactsOfKind:
         return self._left[number]
 
     def _near(self, number):
-        """Returns elements of other solids whose boxes meet the element's box."""
+        """Returns the numbers of elements of other solids whose boxes meet the element's box."""
         opposite = -self.boxes[number - 1][[3, 4, 5, 0, 1, 2]]
         meet = (self.boxes <= opposite + self.tolerance).all(axis=1)
         mine = self.solids[number - 1]
@@ -203,8 +203,8 @@ def _is_nothing(part, whole):
 
 
 def _may_coincide(a, b, tolerance):
-    """Returns False if points of one of them are off the surface or the curve of the other. Planes, cylinders
-    and similar surfaces coincide everywhere or nowhere."""
+    """Returns False if two elements surely have no common part: if both are analytic (planes, lines, ...) and of
+    different types, or if points of one are off the analytic surface or curve of the other."""
     if _is_analytic(a):
         a, b = b, a
     if not _is_analytic(b):

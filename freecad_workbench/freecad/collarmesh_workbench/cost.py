@@ -7,7 +7,7 @@ from .size_presets import count_text, duration_text
 from .translations import translate
 
 MANY = 5_000_000  # number of elements
-BYTES = {1: 1000, 2: 2000}  # bytes of memory per element, by order; the mesher needs them, and after it FreeCAD
+BYTES = {1: 1000, 2: 2000}  # bytes that the mesher, and after it FreeCAD, needs per element, by order
 GIGABYTE = 1e9
 LOADING = {1: 5e-6, 2: 12e-6}  # seconds per element that FreeCAD takes to read it, by order
 

@@ -7,7 +7,7 @@ from PySide import QtCore, QtGui
 
 
 def widen(form, width):
-    """Widens the dock to the whole width of a panel (pixels) as soon as the panel is in it."""
+    """Widens the dock, if it is narrower, to this width (pixels) as soon as the panel is in it."""
     QtCore.QTimer.singleShot(0, lambda: _widen(form, width))
 
 

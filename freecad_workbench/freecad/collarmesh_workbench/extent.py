@@ -1,4 +1,4 @@
-"""The sizes of the parts to mesh."""
+"""The bounding boxes of parts and of their sub-shapes."""
 
 import FreeCAD
 import Part
@@ -26,6 +26,6 @@ def box_of_subshape(part, name):
 
 
 def diagonal(part):
-    """Returns the diagonal in mm; 0 without geometry."""
+    """Returns the diagonal of a part's box in mm; 0 without geometry."""
     box = bounding_box(part)
     return box.DiagonalLength if box.isValid() else 0

@@ -28,7 +28,7 @@ def freecads_place(command):
 
 
 class Inserter(QtCore.QObject):
-    """Puts our actions after FreeCAD's each time a workbench becomes active."""
+    """An object that puts our actions after FreeCAD's each time a workbench becomes active."""
 
     def __init__(self, window):
         super().__init__(window)

@@ -1,8 +1,8 @@
-"""Groups of elements with the names of FEM's objects, made from the groups of faces, edges and solids. FreeCAD finds
-the elements of a material by the places of their nodes, which loses some elements where solids touch. It prefers a
-volume group called `<material>_...`. A document observer keeps these groups up to date: it makes them anew when a
-material's references or the members of the analysis change. Constraints need no groups, because their nodes lie on the
-exact faces."""
+"""Groups of elements with the names of FEM's objects, made from the groups of faces, edges and solids. Without such a
+group, FreeCAD finds the elements of a material by the places of their nodes, which loses some elements where solids
+touch; it prefers a volume group called `<material>_...`. A document observer makes the groups again when a material's
+references or the members of the analysis change. Constraints need no groups, because their nodes lie on the exact
+faces."""
 
 import re
 
@@ -32,8 +32,8 @@ def materials_of(analysis):
 
 
 def elements_of(fem_mesh, part, subshapes):
-    """Returns the kind of group and the elements for names like Face7; searches by place if the mesh has no
-    such group."""
+    """Returns the kind of group, and the elements on sub-shapes with names like Face7. Searches for a face or an edge
+    by place if the mesh has no group for it."""
     groups, kind, elements = named(fem_mesh), "", set()
     for name in subshapes:
         kind = next((value for key, value in KINDS.items() if name.startswith(key)), "")
@@ -97,8 +97,8 @@ def wanted(mesh_object, fem_mesh):
 
 
 def materials_elsewhere(mesh_object):
-    """Returns messages on materials without elements, because they refer to solids that the meshed part does
-    not have."""
+    """Returns messages on materials that have no elements because they refer to solids that the meshed part does not
+    have."""
     part = compatibility.meshed_object(mesh_object)
     if part is None or inputs.triangles_of(part) is not None:
         return []
@@ -139,7 +139,7 @@ def names_of_owners(mesh_object):
 
 
 class Observer:
-    """Follows the objects from which groups are made."""
+    """An observer of the objects from which groups are made."""
 
     def slotChangedObject(self, changed, name):
         if name not in ("References", "Group"):

@@ -26,7 +26,7 @@ class GuaranteesView(QtGui.QWidget):
         self.show()
 
     def show_out_of_date(self, out_of_date):
-        """Shows the results in grey if they belong to an older mesh."""
+        """Shows the guarantees in grey if the mesh is out of date."""
         if self._report is not None and out_of_date != self._out_of_date:
             self._out_of_date = out_of_date
             self._write()

@@ -8,7 +8,7 @@ AGAIN = 100  # milliseconds between attempts
 
 
 def later(action, milliseconds=0):
-    """Calls `action` after this time or, if a document is being recomputed then, after that."""
+    """Calls `action` after this time. If a document is being recomputed then, waits for the end of the recompute."""
     QtCore.QTimer.singleShot(milliseconds, lambda: _try(action))
 
 

@@ -90,7 +90,7 @@ def checked(obj, name, least, most):
 
 
 def subshapes(obj, part):
-    """Returns the numbers of the object's faces and of its solids. Raises MesherError for others."""
+    """Returns the numbers of the object's faces and of its solids. Raises MesherError for other sub-shapes."""
     found = {"Face": [], "Solid": []}
     for kind, number in size_objects.subshapes(
             obj, part, found,

@@ -10,7 +10,7 @@ from . import (compatibility, constraint_faces, contact_groups, contacts, elemen
 from .program import GUARANTEE_MISSED, Job, MesherError
 from .translations import translate
 
-TINY = 0.01  # shorter edges, relative to the target edge length, are probably unintended
+TINY = 0.01  # edges shorter than this, relative to the target edge length, are probably unintended
 
 
 class MeshProxy(compatibility.WithProperties):

@@ -82,7 +82,8 @@ class Observer:
 
 
 def _put(obj, fem_mesh):
-    """Replaces the object's mesh if it is a different one. None: that mesh is no longer kept."""
+    """Gives the object this mesh if it has a different one. Does nothing for None, which stands for a mesh that is no
+    longer kept."""
     if fem_mesh is None or same(fem_mesh, obj.FemMesh):
         return
     fem_mesh = fem_mesh.copy()

@@ -31,7 +31,7 @@ class Outcome:
     report: dict = None  # None: no mesh
     error: str = ""
     cancelled: bool = False
-    page: str = ""  # path of the report as a page
+    page: str = ""  # path of the report's HTML page; empty: none
     part_changed: bool = False  # whether the part changed during meshing
     warnings: tuple = ()  # warnings about the shape, from before the run
     mesh_number: int = 0  # see mesh_undo
@@ -53,8 +53,8 @@ def outcome_of(obj):
 
 
 def start(obj, time_left=None, prepare=mesh_object.start):
-    """Begins a run of the Job that `prepare(obj)` returns; `time_left` is a TimeLeft, if there is an estimate. Raises
-    MesherError."""
+    """Begins a run of the Job that `prepare(obj)` returns, unless the object has a run already. `time_left` is a
+    TimeLeft, if there is an estimate. Returns the object's run. Raises MesherError."""
     if run_of(obj) is None:
         _runs[key_of(obj)] = MeshingProcess(obj, time_left, prepare)
     return run_of(obj)

@@ -7,8 +7,8 @@ def type_of(obj):
 
 
 def value_of(obj, name, *default):
-    """Returns a property's value, of a quantity in millimetres or degrees; without the property, `default`. Raises
-    AttributeError if none is given."""
+    """Returns a property's value; that of a quantity is in millimetres or degrees. If the object lacks the property,
+    returns `default` or, without one, raises AttributeError."""
     value = getattr(obj, name, *default)
     return getattr(value, "Value", value)
 

@@ -28,8 +28,9 @@ def dimension(part, asked, fill_holes):
 
 
 def check(part, dimension_of_elements, fill_holes):
-    """Raises MesherError if a shape cannot be meshed with such elements: tetrahedra for wires, faces or open
-    surfaces (unless their holes may be filled), triangles without faces, lines without edges."""
+    """Raises MesherError if a shape cannot be meshed with elements of this dimension: wires, single faces and open
+    surfaces (unless their holes may be filled) with tetrahedra, shapes without faces with triangles, shapes without
+    edges with lines."""
     text = fault(part, dimension_of_elements)
     if not text and dimension_of_elements == 3 and not fill_holes and question(part):
         text = question(part) + " " + translate("collarmesh", "Or set “Fill holes of open surfaces”.")
@@ -38,7 +39,7 @@ def check(part, dimension_of_elements, fill_holes):
 
 
 def fault(part, dimension_of_elements=3):
-    """Returns the reason why the shape cannot be meshed with such elements; "" if it can."""
+    """Returns the reason why the shape cannot be meshed with elements of this dimension; "" if it can."""
     shape = inputs.shape_of(part)
     text = ""
     if dimension_of_elements == 2 and not shape.isNull() and not shape.Faces:
@@ -94,7 +95,7 @@ def _without_volume(part):
 
 
 def open_edges(shape):
-    """Returns the number of edges that border only one face after sewing faces that meet."""
+    """Returns the number of edges that border only one face after faces that meet are sewn."""
     found = next((count for known, count in _known if known.isSame(shape)), None)
     if found is None:
         found = _count_open_edges(shape)

@@ -25,7 +25,8 @@ class Place:
 
 
 def told(kind, text, points=()):
-    """Returns a Place with a message and the places that it mentions."""
+    """Returns a Place with a message, and with the points and sub-shapes that it mentions. If it mentions no points,
+    `points` are used."""
     found = tuple(tuple(map(float, numbers)) for numbers in _POINT.findall(text))
     return Place(kind, text, found or tuple(map(tuple, points)), tuple(dict.fromkeys(_SUBSHAPE.findall(text))))
 
@@ -36,8 +37,8 @@ def in_error(message):
 
 
 def in_report(report, warnings=()):
-    """Returns the Places of a run with a mesh, each message once. `warnings` are those that the report does
-    not have."""
+    """Returns the Places of a run with a mesh, each message once. `warnings` are further ones, which the report
+    lacks."""
     places = [told(PROBLEM, each["message"], [each["where"]]) for each in report["check"]["findings"]]
     if report["message"] and not report["guarantees_hold"]:
         places.insert(0, told(PROBLEM, report["message"]))

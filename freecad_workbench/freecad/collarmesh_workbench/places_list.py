@@ -32,7 +32,7 @@ class PlacesList(QtGui.QTreeWidget):
         self._filling = False
 
     def fill(self, found):
-        """Show these Places, in the order of their kinds."""
+        """Shows these Places, in the order of their kinds."""
         self._filling = True
         self.clear()
         for kind, heading, colour in _kinds():
@@ -91,7 +91,7 @@ class PlacesList(QtGui.QTreeWidget):
 
 
 class _Wrapped(QtGui.QStyledItemDelegate):
-    """Makes rows as high as their texts need."""
+    """A delegate that makes rows as high as their texts need."""
 
     def sizeHint(self, option, index):
         tree = self.parent()

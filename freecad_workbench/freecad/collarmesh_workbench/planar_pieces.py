@@ -1,4 +1,4 @@
-"""Merges triangles into few planar faces. Triangles in one plane become one face, with its holes."""
+"""Merges triangles into few planar faces. Connected triangles in one plane become one face, with its holes."""
 
 import math
 
@@ -11,8 +11,8 @@ MOST = 2000
 
 
 def faces(points, triangles):
-    """Returns faces for triangles (numbers of `points`, counterclockwise as seen from outside), the largest
-    first. If a finely curved surface would have too many planes, its faces are only near the triangles."""
+    """Returns faces for triangles (indices of `points`, counterclockwise as seen from outside), the largest first. If a
+    finely curved surface would have too many faces, fewer faces only approximate it."""
     normals = numpy.cross(points[triangles[:, 1]] - points[triangles[:, 0]],
                           points[triangles[:, 2]] - points[triangles[:, 0]])
     areas = numpy.linalg.norm(normals, axis=1)
@@ -40,8 +40,8 @@ def _neighbours(triangles):
 
 
 def _pieces(normals, areas, neighbours, angle):
-    """Returns pieces: connected triangles whose normals are within `angle` of the normal of the first one.
-    Begins with the largest triangles."""
+    """Returns pieces, each a list of connected triangles whose normals are within `angle` (degrees) of the normal of
+    its first one. Begins with the largest triangles."""
     least, free, pieces = math.cos(math.radians(angle)), [True] * len(normals), []
     vectors = normals.tolist()
     for seed in numpy.argsort(-areas, kind="stable").tolist():
@@ -62,7 +62,8 @@ def _pieces(normals, areas, neighbours, angle):
 
 
 def _face(points, triangles, normal):
-    """Returns the face with the outline of triangles, in the plane of the first one."""
+    """Returns the face with the outline of triangles, in the plane of the first triangle; only that triangle if the
+    outline bounds no valid face."""
     origin = points[triangles[0, 0]]
     try:
         wires = [_wire(points[loop], origin, normal) for loop in _loops(triangles.tolist())]

@@ -23,8 +23,8 @@ _answers = collections.deque(maxlen=SHAPES)  # (numbers of a shape, {(arguments,
 
 
 def _answers_for(numbers):
-    """Returns the answers for the shape with these numbers (see up_to_date). They are kept while FreeCAD
-    runs."""
+    """Returns the answers for the shape with these numbers (see up_to_date). The answers for the last SHAPES shapes are
+    kept while FreeCAD runs."""
     for known_numbers, answers in _answers:
         if up_to_date.same_shape(known_numbers, numbers):
             return answers
@@ -33,8 +33,8 @@ def _answers_for(numbers):
 
 
 class Predictions(QtCore.QObject):
-    """Predicts in a separate process, a moment after the last `ask`. Reports nothing if the program makes no
-    prediction."""
+    """A predictor that runs the program in a separate process, a moment after the last `ask`. If the program makes no
+    prediction for a size, the answers lack it."""
 
     made = QtCore.Signal(object)  # all known answers: {asked size in mm: (number of tetrahedra, seconds)}
 
@@ -51,8 +51,9 @@ class Predictions(QtCore.QObject):
         self._timer.timeout.connect(self._begin)
 
     def ask(self, settings, sizes, wait=WAIT):
-        """Asks for predictions for the Settings with each of these sizes (mm). Returns the answers that are
-        known already. The program makes no predictions for meshes that are not coarsened."""
+        """Asks for predictions for the Settings with each of these sizes (mm), after `wait` milliseconds. Returns the
+        answers that are known already. Asks nothing for meshes that are not coarsened, for which the program makes no
+        predictions."""
         answers = self.known(settings, sizes)
         if settings.coarsen:
             self._timer.start(wait)

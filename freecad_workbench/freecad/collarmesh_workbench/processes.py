@@ -1,7 +1,7 @@
 """Processes of Qt that may outlive the object that started them.
-Qt's main loop frees a process when nothing refers to it any more. While doing so, it frees the objects that the
-process's connections hold. If one of these were its parent, the parent would free the process a second time.
-So the application is the parent of all processes, and a process that ends has no connections any more."""
+Qt's main loop frees a process when nothing refers to it any more, and with it the objects that the process's
+connections hold. If one of these were the parent of the process, it would free the process a second time.
+So the application is the parent of all processes, and `end` removes the connections of a process."""
 
 import contextlib
 

@@ -14,7 +14,7 @@ from .translations import translate
 from .work_folder import WorkFolder
 
 GUARANTEE_MISSED = 7  # exit code if the mesh misses a guarantee; a usable mesh is written all the same
-# Names of settings: sizes, and those that also hold when a mesh is adapted to other sizes.
+# Names of settings: sizes, which no longer hold when a mesh is adapted to other sizes, and settings that still hold.
 SIZES = ("size", "size_min", "elements_across_gap", "gradation",
          "solid_sizes", "face_sizes", "edge_sizes", "size_field")
 OF_ADAPTING = ("elements_per_circle", "radius_edge", "distance", "planar_tolerance", "min_dihedral", "time_limit",
@@ -56,8 +56,8 @@ class Settings(dataclasses.make_dataclass("OfProgram", [_field(*item) for item i
     size_field: dict = None  # sizes by place: sources as in mesher/doc/sizes.md
 
     def for_adapting(self):
-        """Returns the settings that count when a mesh is adapted to other sizes. None if some settings only
-        hold when the shape is meshed anew."""
+        """Returns the settings that still hold when a mesh is adapted to other sizes. None if a setting that is not at
+        its default only takes effect when the shape is meshed anew."""
         without = dataclasses.replace(self, **{name: getattr(Settings(), name) for name in (*SIZES, "seed")})
         kept = Settings(**{name: getattr(self, name) for name in OF_ADAPTING})
         return kept if kept == dataclasses.replace(without, dimension=0) else None
@@ -151,9 +151,9 @@ class Job:
     """One run. Its folder, with the shape, the mesh and the report, is removed at the end."""
 
     def __init__(self, settings, program="", threads=0, input_name="shape.brep", adapts=False):
-        """`threads`: largest number of threads, 0: one per core; `input_name`: name of the file that the
-        caller writes to `self.shape`; `adapts`: does not mesh the shape, but adapts the mesh of it that the caller
-        writes to `self.before`, with `for_adapting()` of the settings."""
+        """`threads`: largest number of threads, 0: one per core; `input_name`: name of the file `self.shape`, which the
+        caller writes; `adapts`: whether the run, in place of meshing the shape, adapts the mesh in `self.before`, which
+        the caller writes, too; the settings must then come from `for_adapting()`."""
         self.folder = WorkFolder()
         self.shape = os.path.join(self.folder.name, input_name)
         self.before = os.path.join(self.folder.name, "before.unv")

@@ -10,12 +10,12 @@ from .size_presets import count_text
 from .translations import translate
 
 LEAST = 10  # elements
-PREFERRED_GROWTH = 2  # of the number of elements
+PREFERRED_GROWTH = 2  # factor of the number of elements that is proposed
 
 
 class RefineSection(QtGui.QWidget):
     """A line that unfolds to the estimated error and the fields for the next mesh. Hidden without a result. Emits
-    `clicked` for a run."""
+    `clicked` when the user asks for a run."""
 
     clicked = QtCore.Signal()
 
@@ -100,8 +100,8 @@ class RefineSection(QtGui.QWidget):
             _put(self.elements, round(self.plan.sizes.count(self.factors)))
 
     def asks(self):
-        """Shows a question if one must be answered before an expensive run; another click confirms. Returns False if
-        there is none."""
+        """Shows a question if one must be answered before an expensive run; another click confirms. Returns whether a
+        question was shown."""
         question = "" if self.question.text() else cost.question(self.plan.sizes.count(self.factors),
                                                                  self.plan.solution.order)
         if question:
@@ -116,12 +116,12 @@ class RefineSection(QtGui.QWidget):
         self.button.setText(translate("collarmesh", "Refine"))
 
     def prepare(self, obj):
-        """Returns the Job of the fields. Raises MesherError."""
+        """Returns the Job that the fields ask for. Raises MesherError."""
         return result_refinement.start(obj, self.plan, self.factors)
 
 
 def _put(field, value):
-    """Shows a value without acting on it."""
+    """Shows a value without emitting the signals of the field."""
     field.blockSignals(True)
     field.setValue(value)
     field.blockSignals(False)

@@ -167,6 +167,6 @@ class Sizes:
         logarithms = numpy.repeat(numpy.log(wanted)[:, None, None], 4, axis=1)
         count = len(self.solution.points)
         lengths = numpy.exp(means_at_points(self.solution.corners, self.volumes, logarithms, count)[:, 0])
-        # Means at the points even out lengths, which changes the number of tetrahedra.
+        # Means at the points even out lengths, which changes the number of tetrahedra; the factor restores this number.
         made = (self.volumes / lengths[self.solution.corners].mean(axis=1) ** 3).sum()
         return lengths * numpy.cbrt(made / (self.volumes / wanted**3).sum())

@@ -13,8 +13,8 @@ from .program import MesherError
 from .translations import translate
 
 SAME_PLACE = 2e-5  # relative to the largest coordinate; CalculiX writes six digits
-MOST_INCOMPRESSIBLE = 0.49  # Poisson's ratio; at 0.5 changes of volume have no finite energy
-STEEL = (210000.0, 0.3)  # for a mesh without a material: one modulus for everything changes no size
+MOST_INCOMPRESSIBLE = 0.49  # largest Poisson's ratio used; at 0.5 a change of volume has no finite energy
+STEEL = (210000.0, 0.3)  # for a mesh without a material; a modulus that is the same everywhere changes no size
 
 
 def result_of(obj):
@@ -70,7 +70,7 @@ def plan(obj):
 
 
 def _displacements(obj):
-    """Returns the result's label, and {node: (place, displacement)}."""
+    """Returns the result's label or file, and {node: (place, displacement)}. Raises MesherError."""
     result = result_of(obj)
     if result is not None and result.Mesh is not None:
         places = result.Mesh.FemMesh.Nodes
@@ -93,7 +93,7 @@ def _displacements(obj):
 
 
 def _solution(obj, label, displacements):
-    """Returns the Solution. Raises MesherError if the result is of another mesh."""
+    """Returns the Solution. Raises MesherError if the result is of another mesh, or the mesh has prisms."""
     fem_mesh = obj.FemMesh
     numbers = sorted(fem_mesh.Volumes)
     nodes = [fem_mesh.getElementNodes(number) for number in numbers]
@@ -164,8 +164,8 @@ def start(obj, made, factors):
 
 
 def refine(obj, elements=None, error=None, progress=None):
-    """Refines and waits, for a number of elements, or for an error relative to the energy norm (0 to 1). Returns the
-    program's report. Raises MesherError; the object keeps its mesh then."""
+    """Refines the mesh and waits. Aims at a number of elements, or at an error relative to the energy norm (0 to 1).
+    Returns the program's report. If it fails, raises MesherError, and the object keeps its mesh."""
     if (elements is None) == (error is None) or not (elements or error or 0) > 0:
         raise MesherError(translate("collarmesh", "Give either a number of elements or an error, more than 0."))
     made = plan(obj)

@@ -89,7 +89,8 @@ def counts_text(report):
 
 
 def layers_text(layers):
-    """Returns the counts of elements in boundary layers, and what these cover, as text."""
+    """Returns text on the numbers of elements in boundary layers, and on the share of the faces that the layers
+    cover."""
     text = translate("collarmesh", "Layers: <b>{prisms}</b> prisms, {pyramids} pyramids and {tets} tetrahedra cover "
                                    "{percent}% of the faces")
     return text.format(prisms=grouped(layers["prisms"]), pyramids=grouped(layers["pyramids"]),

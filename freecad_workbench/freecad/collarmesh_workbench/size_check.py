@@ -4,7 +4,7 @@ from . import extent
 from .program import MesherError
 from .translations import translate
 
-LEAST = 1e-5  # relative to the part's diagonal
+LEAST = 1e-5  # smallest size, relative to the part's diagonal
 
 
 def check(settings, sources, part):

@@ -7,15 +7,16 @@ from pivy import coin
 from PySide import QtCore
 
 SHARE = 0.1  # half a handle's length, relative to the object's diagonal
-SHARE_OF_VIEW = 0.025  # least half length, relative to the visible height
-THICK = 1.3  # thickness relative to Coin's arrows
-EVERY = 20  # ms
+SHARE_OF_VIEW = 0.025  # least half of a handle's length, relative to the visible height
+THICK = 1.3  # thickness of a handle, relative to that of Coin's arrows
+EVERY = 20  # milliseconds between readings of the handles
 LEAST = 1e-3  # shortest length that dragging can make, relative to the object's diagonal
 AXES = {"X": FreeCAD.Vector(1, 0, 0), "Y": FreeCAD.Vector(0, 1, 0), "Z": FreeCAD.Vector(0, 0, 1)}
 
 
 def rods_of(kind):
-    """Returns the axis along which each length's handle slides: (name of the length, axis in the object's frame)."""
+    """Returns a pair for each length with a handle: the name of the length, and the axis of the object along which the
+    handle slides."""
     return {
         "Sphere": (("Radius", "X"),),
         "Box": (("Length", "X"), ("Width", "Y"), ("Height", "Z")),
@@ -24,8 +25,8 @@ def rods_of(kind):
 
 
 class Handle:
-    """An arrow that is dragged along an axis of the object. `name`: of a length, or of the axis for an arrow that moves
-    the object. `dragged(distance)` is called with how far it was dragged since the mouse was pressed, in mm.
+    """An arrow that is dragged along an axis of the object. `name`: of the length that it changes, or of the axis along
+    which it moves the object. `dragged(distance)` gets the distance from where the mouse was pressed, in mm.
     """
 
     def __init__(self, name, axis, dragged):
@@ -44,7 +45,7 @@ class Handle:
         return self.name == self.axis
 
     def put(self, place, rotation, scale):
-        """Resets the translation, and moves the handle there. `scale` is half its length, mm."""
+        """Moves the handle to a place, and resets its translation. `scale` is half of its length, mm."""
         self.scale = scale
         self.was_at = 0.0
         self.transform.translation = tuple(place)

@@ -35,7 +35,7 @@ class Size(compatibility.WithProperties):
                     obj.Growth = GROWTH
 
     def place(self, obj, part):
-        """Sets a first size and place, in the middle of a part."""
+        """Sets first lengths of the body, and puts it in the middle of a part."""
         bounds = extent.bounding_box(part)
         length = DEFAULT_SHARE * bounds.DiagonalLength
         for name, share, _ in self.lengths:

@@ -125,7 +125,7 @@ def on_scale(shares):
 
 
 def coloured(coin, places, rgb):
-    """Returns a node of separate triangles."""
+    """Returns a node that shows separate triangles, with a colour for each corner."""
     node, hints, points = coin.SoSeparator(), coin.SoShapeHints(), coin.SoCoordinate3()
     node.setName(NAME)
     hints.vertexOrdering = coin.SoShapeHints.COUNTERCLOCKWISE  # lit from both sides

@@ -13,7 +13,8 @@ def in_names(text, names):
 
 
 def report_in_names(report, names):
-    """Rewrites all messages of a run's report, and adds the names of faces and edges to its layers and nodes."""
+    """Rewrites all messages of a run's report. Adds the names of faces and edges to its lists of layers and of nodes
+    off their faces."""
     for holder in (*report["check"]["findings"], *report["complex"]["warnings"], report):
         holder["message"] = in_names(holder["message"], names)
     for holder, key in ((report, "warnings"), (report, "notes"), (report["repair"], "messages")):

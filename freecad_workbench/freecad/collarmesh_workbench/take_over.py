@@ -1,5 +1,5 @@
-"""Turns a mesh object of Gmsh or Netgen into one of ours, or ours into one of Gmsh: with sizes, refinements,
-groups, mesh and place in the analysis. Works without the GUI."""
+"""Turns a mesh object of Gmsh or Netgen into one of ours, or ours into one of Gmsh. The new object keeps the sizes,
+refinements, groups, mesh and place in the analysis. Works without the GUI."""
 
 import math
 
@@ -10,7 +10,7 @@ from .objects import type_of, value_of
 from .program import MesherError
 from .translations import doc, translate
 
-# Netgen's growth of sizes and number of elements along a radius of curvature, by the names of its levels.
+# Netgen's growth of sizes and number of elements along a radius of curvature, by the names of its levels of fineness.
 FINENESS = {
     "VeryCoarse": (0.7, 1),
     "Coarse": (0.5, 1.5),
@@ -78,8 +78,8 @@ def take_gmsh(old, new):
 
 
 def take_sizes_by_place(refinements, new):
-    """Makes our size objects for those that later versions of FreeCAD have for Gmsh. Returns notes on those
-    without a counterpart, which stay in the document."""
+    """Makes size objects of ours from sizes by place that later versions of FreeCAD have for Gmsh, and removes the
+    latter. Returns notes on refinements without a counterpart, which stay in the document."""
     lost = []
     for each in refinements:
         wanted = compatibility.size_by_place(each)
@@ -99,8 +99,8 @@ def take_sizes_by_place(refinements, new):
 
 
 def take_layers(layers, new):
-    """Makes our layers for those of Gmsh on faces. Returns notes on others, which are for meshes of triangles
-    and stay in the document."""
+    """Makes layers of ours from Gmsh's layers on faces, and removes the latter. Returns notes on Gmsh's other layers,
+    which are for meshes of triangles and stay in the document."""
     lost = []
     for each in layers:
         names = [name for _, name in size_objects.references(each)]

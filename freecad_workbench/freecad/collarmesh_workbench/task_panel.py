@@ -116,8 +116,8 @@ class MeshTaskPanel:
         self._predict(prediction.WAIT)
 
     def _predict(self, wait):
-        """Predicts the meshes for the sizes with the current fields, after `wait` milliseconds. With None,
-        and while the mesher runs, only shows known answers."""
+        """Predicts the meshes that the current fields make with each size, after `wait` milliseconds. With None, and
+        while the mesher runs, only shows known answers."""
         settings = self._settings()
         if settings is None:
             return
@@ -192,7 +192,7 @@ class MeshTaskPanel:
         self.report_button.hide()
 
     def _asks(self):
-        """Shows a question if one must be answered before meshing. Returns False if there is none."""
+        """Shows a question if one must be answered before meshing. Returns whether there is one."""
         holes, question = "" if self.object.FillHoles else self._open_surface(), self._question()
         if holes:
             self.run_section.ask(" ".join((holes, question)), translate("collarmesh", "Fill the holes"))
@@ -251,8 +251,8 @@ class MeshTaskPanel:
             run.ended.disconnect(self._ended)
 
     def show_state(self, out_of_date):
-        """Updates the state after a recompute, a run or an undo: whether the mesh is the shown one, and
-        whether it is up to date. Keeps messages about the fields or the part."""
+        """Updates the panel after a recompute, a run or an undo: shows the outcome of the mesh that the object has now,
+        and whether the mesh is up to date. Keeps messages about the fields or the part."""
         outcome = meshing_process.outcome_of(self.object)
         tells_of_mesh = self.outcome is None or self.outcome.report is not None
         if self.run is None and tells_of_mesh and outcome is not self.outcome:

@@ -3,7 +3,7 @@
 import math
 
 LEAST_SECONDS, LEAST_SHARE = 2, 0.13  # below these the run itself permits no estimate
-GROWTH = 1.5  # the estimate may grow by at most this factor
+GROWTH = 1.5  # an estimate that exceeds the smallest one shown by this factor is not shown
 
 # The share of the time that has passed at each fraction that the program reports: rounded means over several
 # runs.
@@ -20,7 +20,7 @@ def share_of_time(fraction):
 
 
 class TimeLeft:
-    """Estimates the remaining time of one run. `predicted` and `afterwards` are the predicted seconds of the
+    """An estimate of the remaining time of one run. `predicted` and `afterwards` are the predicted seconds of the
     program and of the steps after it; `predicted` is None without a prediction."""
 
     def __init__(self, predicted=None, afterwards=0):
@@ -29,8 +29,8 @@ class TimeLeft:
         self._least = math.inf  # smallest estimate shown
 
     def seconds(self, passed, fraction):
-        """Returns the remaining seconds when `passed` seconds have passed. None: unknown; infinite: the estimated time
-        is over, or more than GROWTH times the smallest estimate that was shown is left."""
+        """Returns the remaining seconds when `passed` seconds have passed. None: unknown. Infinite: the estimated time
+        is over, or the estimate exceeds GROWTH times the smallest one that was shown."""
         share = share_of_time(fraction)
         left = self._by_run(passed, fraction, share) if self._predicted is None else self._by_prediction(passed, share)
         if left is None or left > GROWTH * self._least:
@@ -45,7 +45,8 @@ class TimeLeft:
         return (1 - share) * self._predicted * max(1, pace) + self._afterwards
 
     def _by_run(self, passed, fraction, share):
-        """Estimates from the run itself. Time passes even if the program's fraction does not change."""
+        """Estimates from the run itself. While the program's fraction does not change, the estimate falls with the
+        clock."""
         if passed < LEAST_SECONDS or share < LEAST_SHARE:
             return None
         if fraction > self._fraction:

@@ -8,7 +8,8 @@ FOLDER = pathlib.Path(__file__).resolve().parents[2] / "translations"
 
 
 def load():
-    """Installs the translations for the language of FreeCAD's window. Texts used before are English."""
+    """Installs the translations for the language of FreeCAD's window. Texts that were translated before stay
+    English."""
     import FreeCADGui
 
     FreeCADGui.addLanguagePath(str(FOLDER))

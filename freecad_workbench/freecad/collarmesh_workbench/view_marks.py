@@ -50,7 +50,8 @@ class ViewMarks:
                     part.ViewObject.Visibility = visible
 
     def _make_room(self, part, part_too):
-        """Makes the mesh transparent. Shows the part only while its sub-shapes are selected."""
+        """Makes the mesh transparent. Shows the part if `part_too`, because its sub-shapes are selected; else hides
+        it."""
         view = self.object.ViewObject
         FreeCADGui.Selection.clearSelection()
         self._before = part, part.ViewObject.Visibility if part else False, view.Transparency

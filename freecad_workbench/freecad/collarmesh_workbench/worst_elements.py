@@ -33,18 +33,18 @@ def smallest_dihedral_angles(corners):
 
 
 def worst(fem_mesh, count=20):
-    """Returns numbers, angles and corners of the worst tetrahedra, worst first."""
+    """Returns numbers, angles and corners of the `count` tetrahedra with the smallest dihedral angles, worst first."""
     numbers, corners = tetrahedra(fem_mesh)
     angles = smallest_dihedral_angles(corners)
     order = numpy.argsort(angles, kind="stable")[:count]
     return numbers[order], angles[order], corners[order]
 
 
-MOST = 100000  # largest number of elements for which FreeCAD's mesh is searched, which takes a second
+MOST = 100000  # largest number of elements of a mesh that is searched; larger ones take too long
 
 
 def in_report(fem_mesh, report):
-    """Returns the worst tetrahedra of a run as Places."""
+    """Returns the worst tetrahedra, as the report of a run lists them, as Places."""
     numbers = fem_mesh.Volumes
     text = translate("collarmesh", "{smallest}° to {largest}° in element {number}")
     return [places.Place(places.WORST, text.format(smallest=f"{each['smallest']:.1f}", largest=f"{each['largest']:.1f}",

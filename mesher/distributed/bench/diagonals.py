@@ -1,7 +1,7 @@
-"""python3 diagonals.py MESH.h5...: dihedral angles of straight refinement by the rule for the diagonal.
+"""python3 diagonals.py MESH.h5...: dihedral angles after refinement with several rules for the inner diagonal.
 
-No vertex moves. The meshes come from collarmesh-mpi with --levels 0. Prints the extreme angles outside collars
-and, if there are collars, in them: of the coarse mesh | after one level | after two levels.
+No vertex moves onto the shape. The meshes come from collarmesh-mpi with --levels 0. Prints the extreme angles outside
+collars and, if there are collars, in them: of the coarse mesh | after one level | after two levels.
 """
 
 import itertools
@@ -26,7 +26,7 @@ def dihedrals(tets):
 
 
 def children(p):
-    """Returns the eight children of each tet in the order of PETSc, which cuts between the middles of the
+    """Returns the eight children of each tet in the order of PETSc, whose inner diagonal joins the middles of the
     edges 01 and 23."""
     x = [p[:, k] for k in range(4)]
     a, b, c, d, e, f = ((x[i] + x[j]) / 2 for i, j in ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3)))

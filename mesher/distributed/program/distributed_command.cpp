@@ -67,8 +67,8 @@ class Session {
                   failure.what()));
 }
 
-/// Does work on each rank that is not collective and may throw Stopped. If it does on some ranks, all ranks
-/// throw the Stopped of the first of these.
+/// Does work on each rank, like `agree`; the work may also throw Stopped. If it does so on some ranks, all
+/// ranks throw the Stopped of the first of these.
 void together(const std::function<void()>& work) {
   std::exception_ptr thrown;
   std::optional<process::Stopped> stopped;
@@ -222,7 +222,7 @@ Coarse make_coarse(process::Process& process, const command::MeshArguments& argu
   });
   if (const int other = first_that_differs(fingerprint(coarse.made.run.plc)); other >= 0)
     throw std::runtime_error(
-        fmt::format("{} makes another complex of the input than rank 0; do all ranks run the same program?",
+        fmt::format("{} makes another complex of the input than rank 0; run the same program on all ranks",
                     host_of(other)));
   return coarse;
 }
@@ -232,11 +232,13 @@ std::string text_of(const LevelReport& level, unsigned number) {
                                  number, level.tets, level.seconds, level.on_features);
   if (level.spoilt > 0 || level.made_room > 0)
     text += fmt::format(
-        "; placing these made {} tets poor or invalid; other vertices were moved {} times to mend tets",
+        "; placing these vertices made {} tets poor or invalid; to mend tets, other vertices were moved {} "
+        "times",
         level.spoilt, level.made_room);
   if (level.drawn_back > 0)
-    text += fmt::format("; {} vertices did not reach their places and are at most {:.3g} away",
-                        level.drawn_back, level.farthest_off);
+    text += fmt::format(
+        "; {} vertices did not reach their places on the shape and are at most {:.3g} away from them",
+        level.drawn_back, level.farthest_off);
   return text + '\n';
 }
 
@@ -332,8 +334,8 @@ double peak_bytes() {
   return 0;
 }
 
-/// Writes files under temporary names into a folder of rank 0. Rank 0 moves them to their places when all
-/// ranks are done.
+/// Writes the files of the mesh into a temporary folder that rank 0 creates. Rank 0 moves them to their
+/// places when all ranks are done.
 void write_files(process::Process& process, const command::MeshArguments& arguments, const ParallelMesh& mesh,
                  Report& report) {
   const bool first = Ranks(MPI_COMM_WORLD).rank == 0;

@@ -14,7 +14,7 @@ namespace collarmesh::distributed {
 namespace {
 
 std::string first_message;
-bool out_of_memory = false;  // whether the code or message says that memory ran out
+bool out_of_memory = false;  // whether this first error was a lack of memory
 
 PetscErrorCode remember(MPI_Comm, int, const char* function, const char*, PetscErrorCode code,
                         PetscErrorType type, const char* message, void*) {
@@ -26,7 +26,7 @@ PetscErrorCode remember(MPI_Comm, int, const char* function, const char*, PetscE
   return code;
 }
 
-/// The kind of a caught exception, with which other ranks throw it again. The order is that of `rethrow`.
+/// The class of a caught exception, from which `rethrow` on other ranks makes an equal one.
 enum class Kind { nothing, option, read, plc, write, memory, petsc, other };
 
 struct Thrown {

@@ -39,9 +39,9 @@ inline void call(PetscErrorCode code) {
   if (code != 0) fail(code);
 }
 
-/// Does work on each rank that is not collective. If it throws on some ranks, all ranks throw the exception
-/// of the first of them, with its message: of the same class if that is one of collarmesh/error.h or
-/// std::bad_alloc. Waiting for other ranks takes no processor time.
+/// Does work on each rank; the work must not be collective. If it throws on some ranks, all ranks throw the
+/// exception of the first of these, with its message: of the same class if that is one of collarmesh/error.h
+/// or std::bad_alloc. Waiting for other ranks takes no processor time.
 void agree(MPI_Comm communicator, const std::function<void()>& work);
 
 /// A rank and the number of ranks.
@@ -53,10 +53,10 @@ struct Ranks {
   int rank = 0, count = 1;
 };
 
-/// Returns the text of one rank on all ranks.
+/// Returns, on all ranks, the text of the rank `from`.
 std::string broadcast(MPI_Comm communicator, std::string text, int from = 0);
 
-/// Returns the values of all ranks, rank by rank, on all ranks. Values: a text, or a vector of plain values.
+/// Returns, on all ranks, the values of all ranks, rank by rank. Values: a text, or a vector of plain values.
 template <class Values>
 Values gathered(MPI_Comm communicator, const Values& own) {
   constexpr std::size_t bytes = sizeof(typename Values::value_type);

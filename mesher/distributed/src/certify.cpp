@@ -89,9 +89,10 @@ struct Expected {
   std::map<Tag, double> volumes, volume_room;
 
  private:
-  // Measures by how much a curve turns. If points of a feature move by d, its length or area changes by at
-  // most d times the angle by which it turns, to first order (Steiner's formula), and by the moves of its
-  // ends. An inscribed polygon turns by as much as the curve that it approximates.
+  // Measures by how much a curve turns. If points of a curve move by at most d, its length changes by at most
+  // d times the angle by which it turns, to first order (Steiner's formula), and by d at each end. Twice the
+  // first term is allowed. An inscribed polygon turns by about as much as the curve that it approximates. For
+  // patches (`smooth_area`), angles between triangles times the lengths of their common edges are summed.
   void measure_turn(const Plc& plc, Index c) {
     const Plc::Curve& curve = plc.curves[c];
     const std::vector<Index>& chain = curve.points;
@@ -319,7 +320,7 @@ class Certification {
   }
 
   void check_points() {
-    std::map<PetscInt, checks::NodesOnFeature> features;  // by code in the label
+    std::map<PetscInt, checks::NodesOnFeature> features;  // by the feature's code in the label
     for (std::size_t i = 0; i < mesh_->points.size(); ++i) {
       if (!owns(i)) continue;
       const Point& p = mesh_->points[i];

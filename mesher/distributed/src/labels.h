@@ -12,7 +12,8 @@ namespace collarmesh::distributed {
 /// Sets a label, given as pairs of a value and a point. Replaces an existing label.
 void set_label(DM dm, const char* name, std::vector<std::pair<PetscInt, PetscInt>> values_and_points);
 
-/// Removes a label from all points of other depths: refinement also labels everything inside labelled points.
+/// Removes a label from all points of other depths than this: refinement also labels the new points inside
+/// labelled ones.
 void keep_depth(DM dm, const char* name, PetscInt depth);
 
 /// Makes the labels `patch` and `curve` from `feature`.

@@ -198,7 +198,7 @@ void set_points(DM dm, const std::vector<Point>& points) {
     at[2] = points[i].z;
   });
   call(VecRestoreArray(coordinates, &values));
-  call(DMSetCoordinatesLocal(dm, coordinates));  // the global coordinates are outdated now
+  call(DMSetCoordinatesLocal(dm, coordinates));  // makes PETSc discard the old global coordinates
 }
 
 std::array<Index, 3> corners_of_face(DM dm, PetscInt face) { return Closure<3>(dm, face).vertices; }

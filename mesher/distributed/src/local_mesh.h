@@ -25,7 +25,7 @@ inline TetMesh::VertexFeature decoded(PetscInt code) {
   return {static_cast<std::uint8_t>(code % 4), code == 0 ? none : static_cast<Index>(code / 4)};
 }
 
-/// Returns the values of a label at the points from `first` on; -1 where there is none.
+/// Returns the values of a label at `count` points from `first` on; -1 for points without the label.
 std::vector<PetscInt> label_values(DM dm, const char* name, PetscInt first, std::size_t count);
 
 /// The mesh of a rank, as the functions of the library take it. Points are the vertices, in the order of the
@@ -45,7 +45,7 @@ struct LocalMesh : TetMesh {
 
   std::size_t vertices = 0;                ///< number of points that are vertices
   std::vector<std::array<Index, 2>> ends;  ///< vertices of all edges of the rank
-  /// By face and by edge: its number among all faces, or edges, of the rank.
+  /// For each face in `faces`, its number among all faces of the rank; likewise for each edge in `edges`.
   std::vector<std::size_t> face_number, edge_number;
 
  private:

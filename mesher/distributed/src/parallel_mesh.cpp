@@ -34,7 +34,9 @@ void require_labels(const TetMesh& mesh, const Plc& plc) {
   for (const Plc::Curve& curve : plc.curves) require("curve", curve.tag);
   const std::size_t features = std::max(plc.patches.size(), plc.curves.size());
   if (features >= static_cast<std::size_t>(most / 4) || mesh.points.size() >= static_cast<std::size_t>(most))
-    throw OptionError("the mesh has more points or features than PETSc's integers can count");
+    throw OptionError(
+        "the mesh has more points or features than PETSc's integers can count; choose a larger size, or use "
+        "a PETSc with integers of 64 bits");
 }
 
 AngleBounds angles_of(const TetMesh& mesh) {
@@ -89,7 +91,7 @@ void label_features(DM dm, const TetMesh& mesh) {
     codes[static_cast<std::size_t>(face)] = code;
     const PetscInt* edges = nullptr;
     call(DMPlexGetCone(dm, face, &edges));
-    for (std::size_t k = 0; k < 3; ++k)  // edges on no curve
+    for (std::size_t k = 0; k < 3; ++k)  // label its edges that are on no curve
       if (PetscInt& of_edge = codes[static_cast<std::size_t>(edges[k])]; of_edge < 0) of_edge = code;
   }
   std::vector<std::pair<PetscInt, PetscInt>> labels;

@@ -26,13 +26,13 @@ using projection::least_gain;
 using projection::longest_way;
 using projection::retries;
 
-// Largest violation of the bounds on angles that is acceptable as a last resort, degrees.
+// The violation of the bounds on angles, in degrees, at which the score of a tet is 0.
 constexpr double tolerated = 10;
-// Least score of a tet that may stay: 1 is within the bounds, 0 violates them by `tolerated`.
+// Least score of a tet that may stay, unless it was worse before the move.
 constexpr double least_score = 0.2;
 // The score of a flat tet; inverted tets have lower scores.
 constexpr double flat_score = -100;
-// The unit to which penalties are rounded. Doubles add its multiples without rounding.
+// The unit of penalties, which are whole multiples of it. Doubles add these without rounding.
 constexpr double unit_of_penalty = 0x1p-16;
 // The maximum number of sweeps that make room, and the lengths of steps that a vertex tries, relative to its
 // shortest edge.
@@ -43,7 +43,7 @@ constexpr std::size_t places = 2 + 6 * steps.size();  // places that a vertex tr
 // and again once something around it changes.
 constexpr std::uint8_t tries = 4;
 // A displacement off a plane or a straight curve counts as none if it is shorter than this times the shortest
-// edge.
+// edge at the vertex.
 constexpr double no_way = 1e-6;
 
 std::uint64_t mixed(std::uint64_t h) {  // the finalizer of MurmurHash3
@@ -181,7 +181,8 @@ class Placement {
   double least(Index tet) const { return wanted_.least[mesh_->tet_collar[tet] != 0 ? 1 : 0]; }
   double most(Index tet) const { return wanted_.most[mesh_->tet_collar[tet] != 0 ? 1 : 0]; }
 
-  /// Returns 1 for a tet within the bounds on angles, 0 for one that violates them by `tolerated`.
+  /// Returns the score of a tet: 1 within the bounds on angles, 0 if it violates them by `tolerated`, linear
+  /// between and below; at most `flat_score` for flat and inverted tets.
   double score(Index tet, const Corners& p) const {
     const double six = six_volume(p[0], p[1], p[2], p[3]);
     if (!(six > 0)) return flat_score + projection::score_of_inverted(p, six);
@@ -251,8 +252,8 @@ class Placement {
     return independent(wishes, sweep);
   }
 
-  /// Returns the vertices marked in `wishes`, but only one of two that share a tet: the one whose hash, from
-  /// its place before this level and the sweep, is greater. All ranks that have a vertex decide alike if they
+  /// Returns the vertices marked in `wishes`, but only one of two that share a tet: the one with the greater
+  /// hash of the sweep and of its place before this level. All ranks that have a vertex decide alike if they
   /// have the same wishes.
   std::vector<Index> independent(const std::vector<PetscInt>& wishes, unsigned sweep) const {
     std::vector<Index> vertices;
@@ -370,9 +371,9 @@ class Placement {
     return tried;
   }
 
-  /// Moves back, in each tet that cannot stay, the vertex on a feature with the longest displacement or, if
-  /// all of these have moved back, the vertices that moved to make room. Returns the tets around these
-  /// vertices.
+  /// Moves vertices back a step. In each tet that cannot stay, these are the vertices with the longest
+  /// displacement onto features or, if no vertex has one left, those that moved to make room; on each edge of
+  /// a curve that is not `on_course`, the end with the longest displacement. Returns the tets around them.
   std::vector<Index> draw_back(const std::vector<Index>& tets) {
     std::vector<PetscInt> marks(mesh_->points.size(), 0);
     const auto mark = [&](const auto& corners) {

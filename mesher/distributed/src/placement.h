@@ -10,7 +10,7 @@
 
 namespace collarmesh::distributed {
 
-/// The shares of their displacement that vertices and mid-edge nodes have after 0, 1, 2 and 3 steps back.
+/// The shares of their displacement that vertices and mid-edge nodes keep after 0, 1, 2 and 3 steps back.
 inline constexpr std::array<double, 4> shares{1, 0.5, 0.25, 0};
 
 /// Marks the points with the longest displacement among `points`, so that they move back. Returns false if no

@@ -102,8 +102,8 @@ class DistributedCurving {
         curved_.push_back(t);
   }
 
-  /// Returns marks by edge: marked are, in each invalid tet, the edges whose nodes have the longest
-  /// displacement.
+  /// Returns marks by edge: 1 for the edges whose nodes have the longest displacement in an invalid tet, 0
+  /// for all others.
   std::vector<PetscInt> faulty() const {
     std::vector<PetscInt> marks(ways_.size(), 0);
     const auto way_of = [&](std::size_t e) { return shares[back_[e]] * norm(ways_[e]); };

@@ -17,7 +17,7 @@ namespace collarmesh::distributed {
 namespace {
 
 /// Rotations of a tet's corners. PETSc cuts the octahedron in the middle of a tet between the middles of the
-/// edges 01 and 23. A rotation of the first three corners by one of these amounts chooses another pair of
+/// edges 01 and 23. A rotation of the first three corners by one of these amounts chooses the pair of
 /// edges. PETSc numbers the corners of the eight children so that later levels cut them along the diagonals
 /// of Bey's rule (Tetrahedral grid refinement, 1995): the four tets in the octahedron are cut next between
 /// the middles of this diagonal and of the opposite edge, the other four like the tet that they are similar
@@ -66,8 +66,8 @@ LevelReport ParallelMesh::refine(const Shape& shape) {
   const Stopwatch stopwatch;
   PetscInt first = 0, end = 0;
   call(DMPlexGetHeightStratum(dm_, 0, &first, &end));
-  // Estimates the number of points of all ranks: for each tet there are two faces, slightly more than one
-  // edge, and a fifth of a vertex or slightly more. PETSc's integers must be able to number all of them.
+  // Estimates the number of points of the refined DMPlex on all ranks, 4.5 for each tet: the tet, two faces,
+  // slightly more than one edge, and a fifth of a vertex or slightly more. PETSc's integers must suffice.
   const std::int64_t points = 8 * 9 * all_reduce(communicator_, std::int64_t{end - first}, MPI_SUM) / 2;
   agree(communicator_, [&] {
     if (order_ != 1) throw OptionError("meshes of second order are not refined; raise the order afterwards");

@@ -47,7 +47,7 @@ class SharedPoints {
   PetscInt first_ = 0;
   std::vector<bool> owned_;
   std::vector<std::size_t> shared_;
-  PetscSF forest_ = nullptr;  // over shared_
+  PetscSF forest_ = nullptr;  // connects the copies of the points in shared_
 };
 
 }  // namespace collarmesh::distributed

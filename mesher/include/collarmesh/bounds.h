@@ -40,11 +40,12 @@ struct Bounds {
   double tets_across() const { return interior_node ? 2 : 1; }
 };
 
-/// Returns the distance that these bounds allow between the smooth patches and curves of a complex and a
-/// mesh made with this target edge length (0: its default).
+/// Returns the distance that these bounds allow between the smooth patches and curves of a complex and a mesh
+/// with cells of this order. `size`: target edge length of the mesh, absolute; 0: the default length.
 SurfaceTolerance tolerance_of(const Plc& plc, const Bounds& bounds, double size, int order = 1);
 
-/// Returns the distance for a mesh whose target edge length is unknown: the largest one over all lengths.
+/// Returns the distance for a mesh whose target edge length and order are unknown: the largest one over all
+/// lengths and orders.
 SurfaceTolerance tolerance_of_any_size(const Plc& plc, const Bounds& bounds);
 
 }  // namespace collarmesh

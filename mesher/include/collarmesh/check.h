@@ -55,13 +55,13 @@ struct CheckReport {
   double max_thin_radius_edge = 0;  ///< largest radius-edge ratio of thin tets
   std::size_t forced_tets = 0;  ///< thin tets that keep their bounds only because these are lower where the
                                 ///< input forces short edges
-  double min_forced_dihedral = 180;             ///< smallest dihedral angle of those tets
+  double min_forced_dihedral = 180;             ///< smallest dihedral angle of the forced tets, degrees
   double min_dihedral = 180, max_dihedral = 0;  ///< dihedral angles outside collars, degrees
-  double max_collar_dihedral = 0;
-  double min_collar_dihedral = 180;
-  double max_surface_distance = 0;  ///< largest distance between mesh and complex on smooth patches and
-                                    ///< curves, in both directions
-  double median_edge = 0;
+  double max_collar_dihedral = 0;               ///< largest dihedral angle in collars, degrees
+  double min_collar_dihedral = 180;             ///< smallest dihedral angle in collars, degrees
+  double max_surface_distance = 0;     ///< largest distance between mesh and complex on smooth patches and
+                                       ///< curves, in both directions, input units
+  double median_edge = 0;              ///< median length of the edges, input units
   std::size_t surface_tets = 0;        ///< tets with all corners on boundaries, interfaces or patches inside
                                        ///< regions
   std::vector<double> region_volumes;  ///< by region index, [0] unused; of curved elements if the order is 2
@@ -77,8 +77,8 @@ struct CheckReport {
 
 /// Recomputes every guarantee from the mesh alone, independently of how it was made: positive volumes,
 /// conformity, watertight regions, region volumes, curves as unions of edges, facets as unions of faces,
-/// equal areas of planar patches, radius-edge ratios, or angles of thin tets and of collars, surface
-/// distance. A region may lose or gain 5% of its volume with elements of first order, 1% with those of second
+/// equal areas of planar patches, radius-edge ratios (for thin tets and collars: angles), surface distance. A
+/// region may lose or gain 5% of its volume with elements of first order, 1% with those of second
 /// order, or more if `Bounds::distance` is given; a warning names regions that are more than 2% off. The same
 /// allowance holds for the volumes that closed surfaces enclose (`shells_of`). Averaged over a patch, walls
 /// keep at least half of their thickness and gaps half of their width. A mesh read from a file (no feature

@@ -15,8 +15,8 @@ struct Error : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A file that cannot be read: missing, truncated, malformed. The message starts with the path and
-/// the line or byte.
+/// A file that cannot be read: missing, truncated, malformed. The message starts with the path and the line
+/// or byte.
 struct ReadError : Error {
   using Error::Error;
 };
@@ -44,8 +44,7 @@ struct PlcFault {
   Point where;                ///< a place to look at, input units
 };
 
-/// A complex that is not a PLC. Carries every fault found (the
-/// first ones if there are very many).
+/// A complex that is not a PLC. Carries every fault found (the first ones if there are very many).
 struct PlcError : Error {
   PlcError(const std::string& message, std::vector<PlcFault> faults_found)
       : Error(message), faults(std::move(faults_found)) {}

@@ -18,15 +18,16 @@ struct ImproveOptions {
                           ///< ratio
   bool move_vertices = true;  ///< also move, insert and remove vertices instead of only changing connections
   /// Near thin tets, improve poor tets without inserting or removing vertices, because a coarsened mesh has
-  /// as few vertices as it needs. Tets with an angle above the largest one of thin tets are excepted.
+  /// as few vertices as it needs. This does not hold for tets with an angle above the upper bound for thin
+  /// tets.
   bool keep_vertices = false;
   double edges_per_hole = 0;  ///< as MeshOptions::edges_per_hole
   unsigned passes = 3;        ///< maximum number of passes, each over the tets that are still poor
   unsigned threads = 0;       ///< maximum number of threads; 0: all cores. The result does not depend on it
 };
 
-/// Returns the options of a level: 1 changes connections of tets below 15 degrees, 2 is the default, 3
-/// goes on to 30 degrees. Throws OptionError for other levels.
+/// Returns the options of a level: 1 only changes connections, for tets with angles below 15 degrees; 2 is
+/// the default; 3 improves tets up to 30 degrees, in more passes. Throws OptionError for other levels.
 ImproveOptions improve_options(unsigned level);
 
 struct ImproveReport {
@@ -51,11 +52,11 @@ struct ImproveReport {
 /// and collapses edges whatever the new lengths.
 /// For the few tets that no operation improves, tries an operation that makes tets worse and improves its
 /// result; undoes both unless the tets are better afterwards, compared from the worst one up. Apart from
-/// these trials, no operation makes the worst tet of its cavity worse. No operation at all touches a collar,
-/// leaves the plane of a planar patch, puts faces or edges farther from their smooth patch or curve than
-/// `bounds` allow, or makes a tet that may not be thin exceed the radius-edge bound. Preconditions: `mesh`
-/// comes from `generate` for `plc`, first order, with the same `Bounds::distance`. Cost: linear in the tets;
-/// poor tets cost little if they can reach `min_dihedral`.
+/// these trials, no operation makes the worst tet of its cavity worse. No operation, trials included, touches
+/// a collar, leaves the plane of a planar patch, puts faces or edges farther from their smooth patch or curve
+/// than `bounds` allow, or makes a tet that may not be thin exceed the radius-edge bound. Preconditions:
+/// `mesh` comes from `generate` for `plc`, first order, with the same `Bounds::distance`. Cost: linear in the
+/// tets; poor tets cost little if they can reach `min_dihedral`.
 ImproveReport improve(TetMesh& mesh, const Plc& plc, const ImproveOptions& options = {},
                       const Execution& execution = {});
 

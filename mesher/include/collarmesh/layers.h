@@ -49,7 +49,7 @@ struct LayersReport {
     double area = 0;     ///< area of the wall, absolute
     double covered = 0;  ///< part of that area that all layers cover, absolute
     double asked = 0;    ///< total height asked for, absolute
-    double mean = 0;     ///< mean of the total height reached, weighted by area
+    double mean = 0;     ///< mean of the total height reached, weighted by area, absolute
     /// Histogram over the wall's area: entry i is the area where layers reach 0.1 i to 0.1 (i + 1) of the
     /// height asked for.
     std::array<double, 10> histogram{};
@@ -68,7 +68,8 @@ struct LayersReport {
   double coverage() const;
 };
 
-/// Reads the walls that the options name. Throws OptionError for text that cannot be read.
+/// Reads the walls that the options name: returns one for each text. Throws OptionError for text that cannot
+/// be read.
 std::vector<WallLayers> read_walls(const LayerOptions& options);
 
 /// Throws OptionError, with the known names, if a wall does not exist or two texts name one wall.
@@ -80,11 +81,12 @@ void require_known_walls(const LayerOptions& options, const Plc& plc);
 ///
 /// Layers are lower where there is little room: in gaps, where prisms would fold, and where tets would miss
 /// their bounds (`improvement.bounds`). Heights of neighbours with layers differ by at most a factor of 2.
-/// Heights are 0 where no direction leads away from all walls at a node, and where walls meet faces without
-/// layers. There, prisms become pyramids and tets. In second order the edges of walls keep their nodes, and
-/// their bulges fade towards the tets. Precondition: `mesh` comes from `generate` for `plc`. Same mesh and
-/// options: same result, with any number of threads. If cancelled, the mesh has first order and no layers.
-/// Throws OptionError as `require_known_walls` does. Cost: near linear in the tets.
+/// Heights are 0 at nodes where no direction along the patches without layers leads away from all walls, for
+/// instance where such a patch continues a wall. There, prisms become pyramids and tets. In second order the
+/// edges of walls keep their nodes, and their bulges fade towards the tets. Precondition: `mesh` comes from
+/// `generate` for `plc`. Same mesh and options: same result, with any number of threads. If cancelled, the
+/// mesh has first order and no layers. Throws OptionError as `require_known_walls` does. Cost: near linear in
+/// the tets.
 LayersReport make_layers(TetMesh& mesh, const Plc& plc, const LayerOptions& options,
                          const ImproveOptions& improvement, const SecondOrderOptions& second_order = {},
                          const Execution& execution = {});

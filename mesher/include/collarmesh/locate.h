@@ -15,8 +15,8 @@ struct MeshPlace {
   Index nearest = none;               ///< nearest point of the mesh, if the point is outside all tets
 };
 
-/// Finds the tets that contain points. Tets of second order count as straight. Cost: near linear in the mesh
-/// and the points.
+/// Returns the place of each point, in their order. Tets of second order count as straight. Cost: near linear
+/// in the mesh and the points.
 std::vector<MeshPlace> locate(const TetMesh& mesh, std::span<const Point> points);
 
 }  // namespace collarmesh

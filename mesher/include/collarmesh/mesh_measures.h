@@ -25,8 +25,8 @@ struct MeshMeasures {
   std::array<std::size_t, bins> min_dihedrals{};  ///< tets by their smallest dihedral angle, 10 degrees a bin
   std::array<std::size_t, bins> max_dihedrals{};  ///< tets by their largest dihedral angle
   std::array<std::size_t, bins>
-      radius_edges{};  ///< tets by radius-edge ratio, 0.25 a bin; the last bin is open
-  std::map<Index, double> region_volumes;
+      radius_edges{};                      ///< tets by radius-edge ratio, 0.25 a bin; the last bin is open
+  std::map<Index, double> region_volumes;  ///< by index of the region; input units cubed
   /// The ten tets with the smallest and the ten with the largest dihedral angles, the most extreme first.
   std::vector<Extreme> smallest_angles, largest_angles;
 

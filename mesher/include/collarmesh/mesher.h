@@ -32,13 +32,13 @@ enum class Profile {
   paper
 };
 
-/// The cells in narrow places to which the radius-edge bound applies. A place is narrow between features that
-/// have no point in common and are nearer to each other than a tenth of the size, as across a thin wall. Such
-/// cells may exceed the bound in meshes that will be coarsened, where angles are bounded instead of the ratio
-/// (Bounds::thin_angle).
+/// Whether the radius-edge bound applies to cells in narrow places. A place is narrow between features that
+/// have no point in common and are nearer to each other than a tenth of the size, as across a thin wall.
+/// Cells there may exceed the bound in meshes that will be coarsened, where angles are bounded instead of the
+/// ratio (Bounds::thin_angle).
 enum class NarrowCells {
-  bounded,
-  left,
+  bounded,          ///< all keep the bound
+  left,             ///< all may exceed the bound
   bounded_if_cheap  ///< bounded if that takes at most about twice the vertices; otherwise all may exceed the
                     ///< bound
 };
@@ -94,12 +94,12 @@ double default_size(const Plc& plc, const MeshOptions& options);
 /// place.
 std::vector<std::string> sizes_without_effect(const Plc& plc, const MeshOptions& options);
 
-/// Returns the default of the surface distance tolerance, absolute: a tenth of the target edge length (0: of
-/// its default, as in MeshOptions), at most 1/200 of the diagonal. A circle whose radius is near the target
-/// length then gets about eight edges, whose chord error is about this tolerance. Small curves may be rougher
-/// than large ones, but see MeshOptions::edges_per_hole. For cells of second order the tolerance is at most
-/// 1/550 of the diagonal: it applies to the triangles between corners, and coarser triangles could not be
-/// curved without inverting elements.
+/// Returns the default of the surface distance tolerance, absolute: a tenth of the target edge length `size`
+/// (0: of the default length, see MeshOptions), at most 1/200 of the diagonal. A circle whose radius is near
+/// the target length then gets about eight edges, whose chord error is about this tolerance. Small curves may
+/// be rougher than large ones, but see MeshOptions::edges_per_hole. For cells of second order the tolerance
+/// is at most 1/550 of the diagonal: it applies to the triangles between corners, and coarser triangles could
+/// not be curved without inverting elements.
 double default_distance(double size, double diagonal, int order = 1);
 
 enum class MeshStatus {

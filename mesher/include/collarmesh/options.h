@@ -74,7 +74,7 @@ struct Option {
   };
 
   std::string name;                     ///< long name, "size-min"
-  char letter = 0;                      ///< the short name, if there is one
+  char letter = 0;                      ///< the short name; 0: none
   std::string value_name = {};          ///< the name of its value, "LENGTH"
   std::vector<std::string> words = {};  ///< the words of a choice, in the order of the enumeration; for a
                                         ///< bool, the words for true and false
@@ -101,6 +101,7 @@ struct Option {
   /// Reads the value from text; appends it if the option may be repeated. Returns false if the text does not
   /// fit.
   bool read(const std::string& text, RunOptions& options) const;
+  /// Returns whether a value of the option's kind is in its range or among its words.
   bool fits(const OptionValue& value) const;
   /// Describes the allowed values, such as "a number from 0 to 0.1".
   std::string fitting() const;

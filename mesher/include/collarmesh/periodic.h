@@ -44,13 +44,14 @@ struct PeriodicReport {
 };
 
 /// Throws OptionError if a pair cannot be read, a name is unknown, or the patches are not images of each
-/// other within this distance. The message names the patch, the largest distance and its place.
+/// other. Curves that are not straight may be off their images by `distance` (input units). The message names
+/// a feature without an image and, for a vertex or curve, the distance to the nearest candidate.
 void require_periodic_patches(const PeriodicOptions& options, const Plc& plc, double distance);
 
-/// Gives the second group of each pair the images of the first group's nodes, edges and triangles. The tets
-/// beside them may have poor shapes. Sets `mesh.periodic`, except for its nodes. Preconditions: patches of
-/// these groups are planar and have a region on one side only. Throws OptionError as
-/// `require_periodic_patches` does.
+/// Changes both groups of each pair so that the nodes, edges and triangles of the second are images of those
+/// of the first. The tets beside them may have poor shapes. Sets `mesh.periodic`, except for its nodes.
+/// Preconditions: patches of these groups are planar and have a region on one side only. Throws OptionError
+/// as `require_periodic_patches` does.
 PeriodicReport make_periodic(TetMesh& mesh, const Plc& plc, const PeriodicOptions& options, double distance);
 
 }  // namespace collarmesh

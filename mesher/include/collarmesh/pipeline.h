@@ -33,8 +33,8 @@ enum class Start {
   automatic,   ///< refinement; if it takes far too many vertices, the constrained tetrahedra
   refinement,  ///< refinement: features are inserted one by one, with all guarantees
   /// Constrained tetrahedra: their faces and edges include the facets and segments of the complex. Later
-  /// stages bring them to the size. Their number is about twice that of the facets, even if features are very
-  /// near each other, but some tetrahedra keep angles beyond their bounds.
+  /// stages bring them to the size. At first their number is about twice that of the facets, even if features
+  /// are very near each other, but some tetrahedra keep angles beyond the bounds.
   constrained
 };
 
@@ -127,7 +127,7 @@ class ComplexSource {
 SoupPipelineResult run_pipeline(ComplexSource& source, const PipelineOptions& options = {},
                                 const Execution& execution = {});
 
-/// Meshes the solids that one or several soups bound, as the function above does.
+/// Meshes the solids that one or several soups bound, in the same way as those of a ComplexSource.
 SoupPipelineResult run_pipeline(std::span<const PolygonSoup> soups, const PipelineOptions& options = {},
                                 const Execution& execution = {});
 
@@ -137,7 +137,8 @@ SoupPipelineResult run_pipeline(std::span<const PolygonSoup> soups, const Pipeli
 PipelineResult run_pipeline(const Plc& plc, const PipelineOptions& options = {},
                             const Execution& execution = {});
 
-/// Returns the surface distance tolerance of these options on a complex of this diagonal, absolute.
+/// Returns the surface distance tolerance of these options on a complex with this diagonal; both in input
+/// units.
 double distance_of(const PipelineOptions& options, double diagonal);
 
 /// Throws OptionError, with the known tags, if a size is given for a tag that no feature has.

@@ -28,7 +28,7 @@ struct Plc {
   /// A feature of dimension 1: a chain of segments that one straight or smooth edge was cut into.
   /// Mesh vertices may lie anywhere on its polyline.
   struct Curve {
-    std::vector<Index> points;  ///< the polyline, at least 2; a closed curve does not repeat its first
+    std::vector<Index> points;  ///< the polyline, 2 or more points; a closed curve does not repeat the first
     std::array<Index, 2> ends{none, none};  ///< the vertices at its ends; both none for a closed curve
                                             ///< without a vertex; equal for a loop at one vertex
     bool closed = false;                    ///< closed without any vertex on it (ends are none)

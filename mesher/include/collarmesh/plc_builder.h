@@ -57,13 +57,14 @@ std::vector<Crease> find_creases(const Plc& plc, double threshold = 60);
 struct PlcSummary {
   Index points = 0, vertices = 0, curves = 0, straight_curves = 0, patches = 0, planar_patches = 0,
         triangles = 0, regions = 0;
-  double diagonal = 0;
-  double smallest_angle = 180;  ///< degrees; smallest angle between any two features that meet
-  double shortest_segment = 0;  ///< smallest distance between feature vertices that a curve joins
-  double spread = 0;            ///< diagonal / shortest feature length
-  double largest_deviation = 0;
-  std::vector<Crease> creases;  ///< creases below the given threshold
+  double diagonal = 0;           ///< input units
+  double smallest_angle = 180;   ///< degrees; smallest angle between any two features that meet
+  double shortest_segment = 0;   ///< smallest distance between vertices that a curve joins, input units
+  double spread = 0;             ///< diagonal / shortest feature length
+  double largest_deviation = 0;  ///< as Plc::largest_deviation
+  std::vector<Crease> creases;   ///< creases below the given threshold
 };
+/// Summarizes a complex. `crease_threshold`: degrees.
 PlcSummary summarize(const Plc& plc, double crease_threshold = 60);
 
 /// The patches of one tag.
@@ -72,7 +73,7 @@ struct PatchSummary {
   std::string name;       ///< name of the tag; empty: none
   std::size_t count = 0;  ///< number of patches
   bool planar = true;     ///< all of them are planar
-  double area = 0;        ///< input units squared
+  double area = 0;        ///< total area, input units squared
   Point where;            ///< centre of the largest triangle of the first patch
 };
 /// Summarizes the patches by tag. Cost: linear.
@@ -84,8 +85,8 @@ struct CurveSummary {
   std::string name;       ///< name of the tag; empty: none
   std::size_t count = 0;  ///< number of curves
   bool straight = true;   ///< all of them are straight
-  double length = 0;
-  Point where;  ///< middle of the longest segment of the first curve
+  double length = 0;      ///< total length, input units
+  Point where;            ///< middle of the longest segment of the first curve
 };
 /// Summarizes the curves by tag. Cost: linear.
 std::vector<CurveSummary> summarize_curves(const Plc& plc);

@@ -11,8 +11,8 @@
 namespace collarmesh {
 
 struct ProjectOptions {
-  Bounds bounds = {};  ///< bounds that no tet breaks; vertices farther than its `distance` from their feature
-                       ///< stay where they are
+  Bounds bounds = {};  ///< bounds that no tet breaks; vertices farther from their feature than the bounds'
+                       ///< `distance` stay where they are
   /// Absolute; a vertex that stays nearer than this to its feature is not listed as an exception.
   double tolerance = 1e-9;
   unsigned threads = 0;  ///< maximum number; 0: all cores

@@ -35,10 +35,9 @@ using AdaptOptions = std::function<void(const Plc&, PipelineOptions&)>;
 /// options of sizes, bounds, improvement, order, partitions and budgets count; exact geometry is ignored,
 /// because its features are those of another complex. With `options.smooth_surface`, nodes on curved patches
 /// and curves go to a smooth surface through the nodes of the given mesh, within the tolerance of its
-/// triangles. Without a size and a field the lengths stay as they
-/// are. Same mesh and options: same result, with any number of threads. Throws PlcError for a mesh that is
-/// not conforming, OptionError for sizes of tags that the mesh does not have. Cost: near linear in the tets
-/// of the mesh and of the result.
+/// triangles. Without a size and a field the lengths stay as they are. Same mesh and options: same result,
+/// with any number of threads. Throws PlcError for a mesh that is not conforming, OptionError for sizes of
+/// tags that the mesh does not have. Cost: near linear in the tets of the mesh and of the result.
 RemeshResult remesh(const TetMesh& mesh, const PipelineOptions& options = {}, const AdaptOptions& adapt = {},
                     const Execution& execution = {});
 

@@ -47,7 +47,7 @@ struct SecondOrderReport {
 /// Turns a mesh into one of second order: every edge gets a mid-edge node, shared by all tets, faces and
 /// edges there. Nodes on smooth patches and curves lie on these; with exact geometry, all nodes on features
 /// lie on it. Other edges stay straight where possible. Where a tet's Jacobian would fall to `least_jacobian`
-/// or below, by `jacobian_exceeds`,
+/// or below (judged by `jacobian_exceeds`),
 /// 1. tets that curved edges make flat at a corner, wherever their other nodes lie, are replaced;
 /// 2. nodes inside regions, and in the planes of planar patches, move until all tets there are valid;
 /// 3. tets for which that does not help are replaced;

@@ -14,13 +14,14 @@ namespace collarmesh {
 /// The result has faces and curve edges but no tets. Faces of a solid point outwards; those of an open
 /// surface are oriented alike as far as it is orientable. Curves are divided once, by size; patches are
 /// refined by circumcentres, coarsened and smoothed until all angles are within the bounds of `check_shells`,
-/// or as near to them as the budget of insertions allows. Nodes lie on the exact geometry if there is one.
-/// `PipelineOptions::faces` chooses the patches. With dimension 1, all curves are divided into edges, also
-/// without patches, and the result has no faces (`check_lines` judges it). Only the options of sizes, the
-/// distance, order and budgets count. Same input and options: same mesh. The status is `complete` even where
-/// the certificate (`PipelineResult::check`) has findings. Throws PlcError for a complex without patches,
-/// OptionError for sizes of tags that it does not have. Cost: near linear in the triangles of the complex and
-/// of the result.
+/// or as near to them as the budget of insertions allows. If there is exact geometry, nodes move onto it as
+/// far as the bounds allow. `PipelineOptions::faces` chooses the patches. With dimension 1, all curves are
+/// divided into edges, also without patches, and the result has no faces (`check_lines` judges it). Only the
+/// options of sizes, the distance, order, exact geometry and budgets count. Same input and options: same
+/// mesh. The status is `complete` even where the certificate (`PipelineResult::check`) has findings. Throws
+/// PlcError for a complex without patches (with dimension 1: without curves), OptionError for unknown patches
+/// and for sizes of tags that the complex does not have. Cost: near linear in the triangles of the complex
+/// and of the result.
 PipelineResult mesh_shells(const Plc& plc, const PipelineOptions& options = {},
                            const Execution& execution = {});
 
@@ -29,9 +30,9 @@ PipelineResult mesh_shells(const Plc& plc, const PipelineOptions& options = {},
 SoupPipelineResult mesh_shells(ComplexSource& source, const PipelineOptions& options = {},
                                const Execution& execution = {});
 
-/// Checks a mesh of some patches of a complex, as `check_shells` does: of those with the names or numbers in
-/// `faces` (see `PipelineOptions::faces`). `CheckOptions::exact` has the measures of the whole complex.
-/// Throws OptionError if no patch has such a name.
+/// Checks, as `check_shells` does, a mesh of the patches of `whole` with the names or numbers in `faces` (see
+/// `PipelineOptions::faces`). `CheckOptions::exact` has the measures of the whole complex. Throws OptionError
+/// if no patch has one of these names or numbers.
 CheckReport check_faces(const TetMesh& mesh, const Plc& whole, const std::vector<std::string>& faces,
                         CheckOptions options = {}, const Execution& execution = {});
 

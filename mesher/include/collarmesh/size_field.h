@@ -13,10 +13,10 @@
 
 namespace collarmesh {
 
-/// Returns the target edge length at a point, absolute, in input units; for `MeshOptions::size_field`.
+/// A function that returns the target edge length at a point, in input units; for `MeshOptions::size_field`.
 using SizeField = std::function<double(const Point&)>;
 
-/// A record of the sources of a size field that made anything finer: those that somewhere asked for less than
+/// A record of which sources of a size field made anything finer: those that somewhere asked for less than
 /// the given size.
 class SizeFieldUse {
  public:
@@ -29,6 +29,7 @@ class SizeFieldUse {
     if (asked < size_ && !used_[source].load(std::memory_order_relaxed))
       used_[source].store(true, std::memory_order_relaxed);
   }
+  /// Returns the names of the sources that made nothing finer.
   std::vector<std::string> without_effect() const;
   double size() const { return size_; }
 
@@ -49,7 +50,9 @@ class SizeFieldUse {
 ///       {"curves": [3, 4], "size": 0.05},
 ///       {"patches": [2], "size": 0.05, "within": 0.5}]}
 /// `size` outside the list holds everywhere; without it only the sources count. Curves and patches are named
-/// by their tags. Throws OptionError, with the place in the text.
+/// by their tags. Lengths are in input units. The field keeps `use`, if there is one, and records in it the
+/// sizes that each source asks for. Throws OptionError, with the place in the text, for a text that cannot be
+/// used.
 SizeField size_field_from_json(const std::string& text, const Plc& plc,
                                const std::shared_ptr<SizeFieldUse>& use = nullptr);
 

@@ -53,13 +53,13 @@ struct SplitReport {
     double largest = 0;      ///< area of the largest opened triangle
     Point where;             ///< the middle of that triangle
     std::size_t closed = 0;  ///< triangles that stay closed, because all their corners are on the cut's front
-    Point closed_at;         ///< the middle of such a triangle
+    Point closed_at;         ///< the middle of a closed triangle
   };
   std::vector<Patch> patches;      ///< sorted by tag
   std::size_t split_nodes = 0;     ///< nodes that have copies now
   std::size_t junction_nodes = 0;  ///< split nodes with two or more copies
   std::size_t new_nodes = 0;       ///< number of copies
-  std::size_t front_nodes = 0;     ///< nodes of these patches without copies
+  std::size_t front_nodes = 0;     ///< nodes of the split patches that have no copies
   Interfaces interfaces;
 };
 

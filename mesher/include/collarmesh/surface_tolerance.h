@@ -16,7 +16,7 @@ class SurfaceTolerance {
  public:
   /// Makes a tolerance that is the same everywhere.
   explicit SurfaceTolerance(double distance) : largest_(distance) {}
-  /// Makes a tolerance from one value for each triangle of the complex; none of them exceeds `largest`.
+  /// Makes a tolerance from one value for each triangle of the complex. Precondition: none exceeds `largest`.
   SurfaceTolerance(const Plc& plc, std::vector<double> triangles, double largest);
 
   /// Returns whether the tolerance depends on the place.
@@ -58,15 +58,15 @@ class SurfaceTolerance {
   double largest_, share_ = 1;
 };
 
-/// Returns the tolerance of a run without a given distance: a tenth of the target edge length (`size`, 0: its
-/// default), at most 1/200 of the diagonal, at most a share of the thickness of the material on either side,
-/// so that its volume is kept, and at most a share of the width of gaps and holes. Opposite sides of a wall
-/// that bend the same way lose and gain the same volume, so their tolerance is larger than that of a rod,
-/// whose sides all lose volume. With elements of second order the tolerance of the triangles between corners
-/// is larger, because the curved elements follow the surface. Cost: near linear in the triangles.
+/// Returns the tolerance of a run without a given distance: a tenth of the target edge length (`size`; 0: the
+/// default length), at most 1/200 of the diagonal, at most a share of the thickness of the material on either
+/// side, so that its volume is kept, and at most a share of the width of gaps and holes. Opposite sides of a
+/// wall that bend the same way lose and gain the same volume, so their tolerance is larger than that of a
+/// rod, whose sides all lose volume. With elements of second order the tolerance of the triangles between
+/// corners is larger, because the curved elements follow the surface. Cost: near linear in the triangles.
 SurfaceTolerance default_tolerance(const Plc& plc, double size, int order = 1);
 
-/// Returns, by place, the largest default tolerance of all sizes and orders.
+/// Returns, for each place, the largest default tolerance there over all sizes and orders.
 SurfaceTolerance largest_default_tolerance(const Plc& plc);
 
 /// A patch whose triangles are too coarse.

@@ -19,8 +19,8 @@ def _volumes(mesh: Mesh) -> Array:
 
 
 def _at_corners(corners: Array, weights: Array, values: Array) -> Array:
-    """Returns the weighted mean of the values of the tetrahedra around each corner, by its number; NaN where there is
-    none.
+    """Returns, for each corner number, the weighted mean of the values of the tetrahedra with this corner; NaN if there
+    are none.
 
     corners: (m, 4). weights: (m,). values: (m, k).
     """
@@ -53,11 +53,11 @@ def _set_mid_nodes(mesh: Mesh, values: Array) -> None:
 
 def estimated_errors(mesh: Mesh, values: ArrayLike, *, across_regions: bool = False) -> Array:
     """Estimate the error of a solution that is linear in each tetrahedron (Zienkiewicz and Zhu 1987): the L2 norm over
-    each tetrahedron of the difference between the solution's gradient and the mean of the gradients around.
+    each tetrahedron of the difference between the solution's gradient and its means at the corners, interpolated.
 
     values: (n,) or (n, k), the solution at the points of the mesh, such as a temperature or displacements.
-    across_regions: if False, means are those of tetrahedra with the same `tet_tag`, as gradients jump where materials
-        meet. Pass True if all tags stand for one material.
+    across_regions: if False, only tetrahedra with the same `tet_tag` contribute to a mean, because gradients jump
+        between materials. Pass True if all tags stand for one material.
 
     Returns (m,), one for each tetrahedron. Raises OptionError for wrong shapes and flat tetrahedra.
     """
@@ -122,7 +122,7 @@ def sizes_from_errors(
 
     def excess(goal: float) -> float:
         """Returns by how much the number of tetrahedra exceeds `elements`, or the square of the total error falls
-        short of the square of `error`. Falls as `goal`, the error per tetrahedron, grows."""
+        short of the square of `error`. The result decreases with `goal`, the error per tetrahedron."""
         factor = factors(goal)
         if elements is not None:
             return float((factor**-3.0).sum() - elements)

@@ -5,7 +5,7 @@ from typing import Any, Dict, List, Mapping, Optional, Tuple
 
 from ._types import MeshFigures
 
-_SHOWN = 10  # number of sentences shown of a list
+_SHOWN = 10  # maximum number of findings shown, and of repairs
 
 
 def table_of(

@@ -8,7 +8,7 @@ import numpy
 
 from ._core import OptionError
 
-if TYPE_CHECKING:  # importing numpy.typing takes as long as everything else
+if TYPE_CHECKING:  # importing numpy.typing takes long
     import numpy.typing
 
     Array = numpy.typing.NDArray[Any]
@@ -74,7 +74,7 @@ class Complex:
     points: (n, 3), any unit of length.
     facets: a sequence of facets. A facet is a polygon, given by three or more rows of `points` in either
         orientation; or a sequence of polygons in one plane. In such a sequence a polygon with two corners is a
-        segment inside the facet, and one with one corner is a point inside it.
+        segment inside the facet, and a polygon with one corner is a point inside it.
     facet_tags: (f,), integers that the faces of the mesh get as tags; default: facets are numbered.
     facet_holes: {row of `facets`: (k, 3)}, a point in each hole that is cut out of that facet, in its plane.
     segments: (s, 2), rows of `points`: edges that the mesh must have; segment_tags: (s,).
@@ -229,8 +229,8 @@ def takes_arrays(function: Callable[..., Any]) -> bool:
 
 
 def _on_points(tets: Array, values: Array, count: int) -> Array:
-    """Returns at each point the smallest value of the tetrahedra around it; the smallest of all values at points
-    without a tetrahedron."""
+    """Returns, for each point, the smallest value of the tetrahedra around it; for points without a tetrahedron, the
+    smallest of all values."""
     found = numpy.full(count, values.min() if len(values) else 0.0)
     found[tets.ravel()] = numpy.inf
     numpy.minimum.at(found, tets.ravel(), numpy.repeat(values, tets.shape[1]))
@@ -257,8 +257,8 @@ def _size_field(field: SizeField) -> Any:
         raise OptionError(f"size_field has {len(values)} values, but must have one for each of {len(points)} points "
                           f"or {len(tets)} tets")
     if tets.size and not (0 <= tets.min() and tets.max() < len(points)):
-        raise OptionError(f"the tets of size_field have corners from {tets.min()} to {tets.max()}; its points are 0 to "
-                          f"{len(points) - 1}")
+        raise OptionError(f"the tets of size_field have corners from {tets.min()} to {tets.max()}; its points are "
+                          f"numbered from 0 to {len(points) - 1}")
     if len(values) != len(points):
         values = _on_points(tets, values, len(points))
     return {"points": points, "tets": tets[:, :4], "values": values, "cad_names": False}

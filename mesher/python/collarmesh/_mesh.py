@@ -59,7 +59,8 @@ _MESHIO_CELLS = {
         "quads": "quad8"},
 }
 _VTK_CELLS = {1: {"tets": 10, "prisms": 13, "pyramids": 14}, 2: {"tets": 24, "prisms": 26, "pyramids": 27}}
-# In VTK's wedges, the normal of the first triangle points away from the second one.
+# For each node of a VTK wedge, its position in our prisms: the normal of a wedge's first triangle points away from the
+# second triangle, the normal of ours towards it.
 _VTK_WEDGE = [0, 2, 1, 3, 5, 4, 8, 7, 6, 11, 10, 9, 12, 14, 13]
 
 
@@ -71,14 +72,14 @@ _SIDES = [[1, 2, 3, 5, 9, 8], [0, 3, 2, 7, 9, 6], [0, 1, 3, 4, 8, 7], [0, 2, 1, 
 
 
 def _cells_with_nodes(cells: ArrayLike, what: str, columns: Tuple[int, int]) -> Array:
-    """Converts cells of first or second order; the number of columns decides."""
+    """Converts cells of first or second order; the number of columns of `cells` decides which."""
     array = numpy.asarray(cells)
     return integers(array, what, columns[1] if array.ndim == 2 and array.shape[1] == columns[1] else columns[0])
 
 
 def _sides_between_tags(tets: Array, tags: Array) -> Tuple[Array, Array]:
-    """Returns the triangles between tets with different tags and those on the outside, and a tag of each triangle: one
-    for each pair of tags, and one for each tag with the outside."""
+    """Returns the triangles on the outside and between tets with different tags, and new tags for them: one for each
+    pair of tags, and one for each tag with the outside."""
     if len(tets) == 0:
         return tets[:, :3], tags
     columns = [side[: 3 if tets.shape[1] == 4 else 6] for side in _SIDES]
@@ -143,7 +144,8 @@ class Mesh:
     edges: (j, 2), edges on feature curves; edge_tag, edge_curve: (j,).
     tet_mid_nodes (m, 6), face_mid_nodes (k, 3), edge_mid_nodes (j,): mid-edge nodes of ab, bc, ca, ad, bd, cd;
         empty for first order.
-    feature_dimension, feature: (n,), the vertex (0), curve (1) or patch (2) that a point is on; 3, -1: none.
+    feature_dimension, feature: (n,), the kind (0 vertex, 1 curve, 2 patch) and the index of the feature that a point is
+        on; 3 and -1: none.
     prisms: (p, 6), of boundary layers: corners a, b, c of the triangle at the wall or nearer to it, then those above
         them; pyramids: (q, 5), corners of the base, counterclockwise as seen from the apex, then the apex.
     prism_region, prism_tag, pyramid_region, pyramid_tag: as for tetrahedra. prism_layer, pyramid_layer: numbers of
@@ -300,7 +302,7 @@ class Mesh:
 
     @property
     def order(self) -> int:
-        """1, or 2 for elements with nodes in the middle of their edges."""
+        """The order of the elements: 1, or 2 if they have mid-edge nodes."""
         return 2 if any(len(nodes) for nodes in (self.tet_mid_nodes, self.face_mid_nodes, self.edge_mid_nodes)) else 1
 
     @property
@@ -323,7 +325,7 @@ class Mesh:
     def split(self) -> Optional[Dict[str, Any]]:
         """The results of `split=` and `keep_apart=`, as in reports: "patches" with the tags of their sides ("minus",
         "plus"), "triangles", "area" and "where"; "split_nodes", "junction_nodes", "new_nodes", "front_nodes". None
-        without them."""
+        without these options."""
         found: Optional[Dict[str, Any]] = self._said["split"]
         return found
 
@@ -390,7 +392,8 @@ class Mesh:
 
         path: its extension gives the format (.vtu, .msh, .inp ...), unless `format` does (".vtu").
         scale: factor of the coordinates, 0.001 to convert millimetres to metres.
-        ghost_cells: write with each partition the tetrahedra of others that share a vertex with it; .msh, .pvtu.
+        ghost_cells: write with each partition the tetrahedra of other partitions that share a vertex with it, in .msh
+            and .pvtu.
         Raises WriteError, also for ghost cells in other formats; OptionError for ghost cells of a mesh that is not
         partitioned.
         """
@@ -401,7 +404,7 @@ class Mesh:
         _core.write_mesh(arrays, os.fspath(path), format, ghost_cells)
 
     def info(self) -> MeshInfo:
-        """Counts, angles, volumes and histograms, as `collarmesh info --json` prints them."""
+        """Return counts, angles, volumes and histograms, as `collarmesh info --json` prints them."""
         return _core.measures(self._arrays())
 
     def interpolate(self, values: ArrayLike, points: ArrayLike, outside: str = "nan") -> Array:
@@ -419,9 +422,9 @@ class Mesh:
         on_points = given.ndim > 0 and len(given) == len(self.points)
         if given.ndim not in (1, 2) or not (on_points or len(given) == len(self.tets)):
             raise _core.OptionError(f"values must have a row for each of the {len(self.points)} points or "
-                                    f"{len(self.tets)} tetrahedra, not the shape {given.shape}")
+                                    f"{len(self.tets)} tetrahedra, but they have the shape {given.shape}")
         if outside not in ("nan", "nearest") or (outside == "nearest" and not on_points):
-            raise _core.OptionError('outside must be "nan", or for values on points "nearest"')
+            raise _core.OptionError('outside must be "nan" or, if the values are given on points, "nearest"')
         self._require_tets_alone("interpolate")
         where = {"name": "points", "points": reals(points, "points", 3)}
         tet, shares, nearest = _core.locate(self._arrays(), where)
@@ -527,7 +530,7 @@ class Mesh:
         `axes` of three dimensions, or on new ones, and returns them. Raises ImportError without matplotlib.
 
         labels: show the names or numbers of faces.
-        curves: show those of edges, too.
+        curves: show the names or numbers of edges.
         """
         import matplotlib.colors
         import matplotlib.pyplot
@@ -552,7 +555,7 @@ class Mesh:
         return axes
 
     def _label(self, axes: Any, dimension: int, centres: Array, tags: Array) -> None:
-        """Writes the name of each tag at the middle one of its triangles or edges."""
+        """Writes the name of each tag, or its number, at the middle one of the tag's triangles or edges."""
         for tag in numpy.unique(tags):
             here = centres[tags == tag]
             middle = here[numpy.linalg.norm(here - here.mean(axis=0), axis=1).argmin()]

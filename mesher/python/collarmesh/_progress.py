@@ -10,7 +10,7 @@ Told = Callable[[str, float], Optional[bool]]
 
 @contextlib.contextmanager
 def watching(progress: Union[bool, Told, None]) -> Iterator[Optional[Told]]:
-    """Gives the callable for the compiled part; for True, a bar, whose line ends with the context."""
+    """Gives the callable for the compiled part. For True, this draws a bar, whose line ends with the context."""
     if progress is not True:
         yield progress or None
         return

@@ -40,8 +40,8 @@ std::vector<Point> points(const py::dict& arrays, const char* key) {
 
 Index index(std::int64_t value, std::size_t size, const std::string& what) {
   if (value < 0 || value >= static_cast<std::int64_t>(size))
-    throw OptionError(
-        fmt::format("{} has the corner {}, but the points are 0 to {}", what, value, std::int64_t(size) - 1));
+    throw OptionError(fmt::format("{} has the corner {}, but points are numbered from 0 to {}", what, value,
+                                  std::int64_t(size) - 1));
   return static_cast<Index>(value);
 }
 
@@ -62,7 +62,7 @@ std::vector<T> numbers(const py::dict& arrays, const char* key) {
   return {wide.begin(), wide.end()};
 }
 
-/// Returns an array that owns its values and is read-only.
+/// Returns a read-only array that owns its values.
 template <class T>
 py::array owned(std::vector<T> values, py::ssize_t columns) {
   auto kept = std::make_unique<std::vector<T>>(std::move(values));
@@ -75,7 +75,7 @@ py::array owned(std::vector<T> values, py::ssize_t columns) {
   return array;
 }
 
-/// Returns indices; `none` becomes -1.
+/// Returns an array of indices, with -1 for `none`.
 py::array index_array(const std::vector<Index>& items) {
   std::vector<std::int64_t> wide;
   wide.reserve(items.size());

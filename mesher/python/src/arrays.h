@@ -18,16 +18,16 @@ namespace collarmesh::python {
 PolygonSoup soup_of(const pybind11::dict& arrays);
 /// Returns a dict of dimension to a dict of tag to "#rrggbb".
 pybind11::dict colours_of(const TagColours& colours);
-/// Returns the points and facets of a soup, and the names of tags, with the same keys.
+/// Returns the name, points, facets and names of tags of a soup, with the keys of `soup_of`.
 pybind11::dict arrays_of(const PolygonSoup& soup);
 
 /// Makes a mesh from a dict. Keys: the names of TetMesh's arrays; feature_dimension and feature for the
 /// features of points; `names`, a dict of dimension to a dict of tag to name; and `cad_names`.
 TetMesh tet_mesh_of(const pybind11::dict& arrays);
 pybind11::dict arrays_of(TetMesh mesh);
-/// Returns the tet, the barycentric coordinates and the nearest point of each place; -1 for none.
+/// Returns arrays: the tet, the barycentric coordinates and the mesh's nearest point of each place; -1: none.
 pybind11::tuple arrays_of(const std::vector<MeshPlace>& places);
-/// Returns `TetMesh::tet_partition` alone.
+/// Returns the array of `TetMesh::tet_partition`.
 pybind11::array partition_array(const TetMesh& mesh);
 
 }  // namespace collarmesh::python

@@ -1,4 +1,4 @@
-// The mesher for Python: the functions that collarmesh/__init__.py calls.
+// The mesher for Python: the functions that the package collarmesh calls.
 #include <fmt/format.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -40,7 +40,7 @@ namespace collarmesh::python {
 
 namespace {
 
-/// The input to be meshed: paths and surfaces given as arrays, in their order.
+/// The input to be meshed: paths, and surfaces given as arrays.
 struct Inputs {
   std::vector<std::string> paths;
   std::vector<PolygonSoup> soups;
@@ -72,7 +72,7 @@ files::ComplexInput read(const Inputs& inputs, const Options& options, Watch& wa
   return input;
 }
 
-/// The data that a call owns while its work runs. Classes derived from it add its results.
+/// The data that a call owns while its work runs. Classes derived from it add the results.
 struct Call {
   Inputs inputs;
   Options options;
@@ -127,7 +127,7 @@ struct MeshCall : Call {
   SoupPipelineResult run;
 };
 
-/// Builds the complexes of a call's inputs.
+/// A builder of complexes from a call's inputs.
 class InputSource : public ComplexSource {
  public:
   /// Keeps references to both arguments.
@@ -335,14 +335,14 @@ py::array partition_mesh(const py::dict& arrays, unsigned partitions) {
   return partition_array(*mesh);
 }
 
-/// Fills in data that meshes of other programs lack.
+/// Adds the data that a mesh of another program lacks.
 py::dict complete(const py::dict& arrays) {
   TetMesh mesh = tet_mesh_of(arrays);
   io::complete_mesh("the mesh", mesh);
   return arrays_of(std::move(mesh));
 }
 
-/// Returns (tet or -1, barycentric coordinates, nearest point or -1) for each point.
+/// Returns (tet or -1, barycentric coordinates, nearest point or -1) for each place.
 py::tuple locate_points(const py::dict& arrays, const py::dict& places) {
   const auto mesh = std::make_shared<TetMesh>(tet_mesh_of(arrays));
   const auto points = std::make_shared<std::vector<Point>>(soup_of(places).points);

@@ -18,8 +18,8 @@ struct Options : RunOptions {
   std::string input_format, output_format;  ///< extensions with their dot; empty: the files' own
 };
 
-/// Returns the size field for this complex: from a file, a JSON description or a callable of arrays; empty
-/// without these. Other size fields are in `mesh.size_field`.
+/// Returns the size field for this complex if it comes from a file, a JSON description or a callable of
+/// arrays; else an empty one, because other size fields are already in `mesh.size_field`.
 SizeField size_field_for(const Plc& plc, const Options& options);
 
 /// Reads options from a dict. Throws OptionError for values of the wrong type or out of range.

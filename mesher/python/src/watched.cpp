@@ -22,7 +22,7 @@ constexpr double until_interpreter_ends = 10;
 
 std::atomic<int> abandoned{0};
 
-/// Runs the handlers of signals that came in the meantime. Returns whether Python may go on.
+/// Runs the handlers of signals that came since the last call. Returns false if one raised an exception.
 bool signals_handled() {
   const py::gil_scoped_acquire acquire;
   return PyErr_CheckSignals() == 0;

@@ -51,8 +51,8 @@ class Watch {
   std::atomic<bool> cancel_{false};
   std::mutex mutex_;  // guards the following members
   std::condition_variable changed_;
-  std::vector<News> news_;  // for each phase the last report that the caller has not yet taken, so that no
-                            // phase is missed
+  std::vector<News> news_;  // reports that the caller has not yet taken: the last one of each phase, so that
+                            // no phase is missed
   std::string stage_ = "start";
   bool done_ = false;
   std::exception_ptr failure_;

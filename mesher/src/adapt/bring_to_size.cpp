@@ -32,8 +32,8 @@ constexpr double longest = coarsening::CoarseningRule::longest_new;
 // If more than the share `most_of_long` of the tets has an edge longer than `far_too_long` times the target
 // when no edge can be divided any more, edges that long are divided whatever the shapes of the new tets.
 constexpr double far_too_long = 2.5, most_of_long = 0.01;
-// Each seed makes `longest` smaller than the seed before by this share; after `different_seeds` seeds the
-// values repeat.
+// `longest` is reduced by this share times (seed modulo `different_seeds`), so that different seeds make
+// different meshes.
 constexpr double less_by_seed = 0.03;
 
 // An edge beside a short edge may be `of_shortest` times as long as the short one; from there edges may grow
@@ -123,7 +123,7 @@ class Bringing {
     return tets_of(graded) > most_times * tets_of(sizes()) + some;
   }
 
-  /// Returns sizes beside short edges or, where they would take very many tets, the targets.
+  /// Returns sizes beside short edges or, if they would take far too many tets, the targets.
   std::vector<double> graded_sizes() const {
     std::vector<double> graded = sizes_beside_short_edges();
     return take_too_many_tets(graded) ? sizes() : graded;
@@ -143,7 +143,7 @@ class Bringing {
         return division.divide_all(any_shape ? far_too_long : longest_, options_.max_vertices, execution_);
       });
       if (divided > 0) relax([](Relaxation& relaxation) { relaxation.collapse_short(around); });
-      // Across a wall whose corners alone face each other, no edge can be divided first without a poor tet.
+      // If only the corners of a thin wall face each other, dividing the first of its edges makes a poor tet.
       if (divided == 0 && (any_shape || !are_far_too_long())) break;
       any_shape = divided == 0;
     }

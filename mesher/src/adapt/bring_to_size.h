@@ -16,12 +16,12 @@ inline constexpr unsigned different_seeds = 4;
 /// `options.max_vertices` vertices.
 bool bring_to_size(TetMesh& mesh, const Plc& plc, const MeshOptions& options, const Execution& execution);
 
-/// Improves tets and collapses short edges where that has become possible, if no tet around gets much worse;
-/// then divides edges like `face_each_other` and improves tets, in several rounds.
+/// Improves tets, collapses short edges if no tet around gets much worse, and improves tets again. Then
+/// divides edges like `face_each_other` and improves tets, in several rounds.
 void relax(TetMesh& mesh, const Plc& plc, const MeshOptions& options, const Execution& execution);
 
-/// Divides edges on opposite sides of thin places, so that the new vertices face each other, where fewer tets
-/// miss the bounds afterwards. Returns whether the mesh has changed.
+/// Divides edges on opposite sides of thin places so that the new vertices face each other, if fewer tets
+/// miss the bounds then or the worst are better. Returns whether the mesh has changed.
 bool face_each_other(TetMesh& mesh, const Plc& plc, const MeshOptions& options, const Execution& execution);
 
 }  // namespace collarmesh::remeshing::adapting

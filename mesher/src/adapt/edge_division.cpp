@@ -91,8 +91,8 @@ std::size_t EdgeDivision::divide_each(const std::vector<LongEdge>& edges, std::s
   return count;
 }
 
-// Returns the length of an edge in target lengths, at its ends or, if that is more, at its middle: the size
-// field may ask for less there.
+// Returns the length of an edge in target lengths: by the targets at its ends or, if it is longer so, by the
+// size field at its middle.
 double EdgeDivision::length_by_field(const LongEdge& edge) const {
   const Point &a = mesh().points[edge.a], &b = mesh().points[edge.b];
   return std::max(edge.length, distance(a, b) / sizing_.default_size(0.5 * (a + b)));

@@ -19,9 +19,9 @@ class EdgeDivision {
   /// Keeps the mesh and the options by reference; `sizes` are targets at the current vertices.
   EdgeDivision(EditableMesh& edited, const MeshOptions& options, std::vector<double> sizes);
 
-  /// Divides once each edge that is longer than `longest` times its target, the relatively longest ones
-  /// first. Returns the number of divided edges. Skips edges whose division would make much worse tets. Stops
-  /// at `most_vertices`; 0: no bound.
+  /// Divides once each edge that is longer than `longest` times its target, the longest in target
+  /// lengths first. Returns the number of divided edges. Skips edges whose division would make much worse
+  /// tets. Stops at `most_vertices`; 0: no bound.
   std::size_t divide_all(double longest, std::size_t most_vertices, const Execution& execution);
   /// Divides, like `divide_all`, each edge that is farther from its smooth patch or curve than the tolerance,
   /// and the longest edge of each face whose centre is too far from the patch.

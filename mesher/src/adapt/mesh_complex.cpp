@@ -30,8 +30,8 @@ std::string text(const Point& p) { return fmt::format("({:.9g}, {:.9g}, {:.9g})"
   throw PlcError(message, {{kind, message, std::move(points), at}});
 }
 
-/// Throws PlcError with the message "The `what` of the nodes ... at ...", followed by `wrong`. The nodes of
-/// the cell get their numbers in the whole mesh, `given`.
+/// Throws PlcError with the message "The `what` of the nodes ... at ...", followed by `wrong`. `given`: by
+/// node, its number in the whole mesh, which the message uses.
 template <std::size_t n>
 [[noreturn]] void refuse(std::string_view what, std::array<Index, n> cell, const std::vector<Index>& given,
                          const Point& at, std::string_view wrong,
@@ -228,12 +228,11 @@ class ComplexBuilder {
       const Plc::Region& region = plc_.regions[mesh_.tet_region[t]];
       if (region.volume > 0) continue;
       const Point& at = mesh_.points[mesh_.tets[t][0]];
-      refuse(
-          PlcFault::Kind::intersection,
-          fmt::format("The tetrahedra of {} at {} have a volume of {:.9g} in all; remove them, or turn those "
-                      "that are inverted.",
-                      region.name, text(at), region.volume),
-          {given_[mesh_.tets[t][0]]}, at);
+      refuse(PlcFault::Kind::intersection,
+             fmt::format("The tetrahedra of {} at {} have a total volume of {:.9g}, which must be positive; "
+                         "remove them, or turn those that are inverted.",
+                         region.name, text(at), region.volume),
+             {given_[mesh_.tets[t][0]]}, at);
     }
   }
 
@@ -254,8 +253,8 @@ class ComplexBuilder {
     plc_ = build_plc({&soup, 1}, options);
   }
 
-  /// Returns whether the mesh lists all edges where not exactly two sides meet or the tags of the two sides
-  /// differ.
+  /// Returns whether the mesh lists all edges at which one side ends, more than two sides meet, or two sides
+  /// with different tags.
   bool edges_are_complete() const {
     if (mesh_.edges.empty()) return false;
     struct EdgeUse {

@@ -60,13 +60,13 @@ void Relaxation::improve() {
   improve_tets(better, Means::vertices);
 }
 
-/// Repeats collapses as long as that is worthwhile.
+/// Repeats collapses until a pass changes little.
 void Relaxation::collapse_again(double below) {
   for (unsigned pass = 0; pass < most_relaxations; ++pass)
     if (!collapse_shorter_than(below)) break;
 }
 
-/// Improves tets as long as that is worthwhile, at first by removing edges alone.
+/// Improves tets until a pass changes little, at first by removing edges alone.
 void Relaxation::improve_tets(double enough, Means later) {
   for (unsigned pass = 0; pass < most_improvements; ++pass)
     if (!improve_below(enough, pass == 0 ? Means::edges : later)) break;
@@ -139,8 +139,8 @@ void Relaxation::propose_collapse(Operations& operations, Index vertex, double b
   }
 }
 
-/// Returns the vertices joined to a vertex by an edge, and the `most_tries` nearest of those that it may be
-/// collapsed onto.
+/// Returns the vertices joined to a vertex by an edge, and the `most_tries` nearest ones that it may be
+/// collapsed onto, if shorter edges than `below` lead there.
 Relaxation::Neighbours Relaxation::neighbours_of(Index vertex, const std::vector<Index>& star,
                                                  double below) const {
   Neighbours found;
@@ -203,7 +203,7 @@ void Relaxation::propose_improvement(Operations& operations, Index tet, double e
     if (means != Means::edges && change.is_none()) operations.move_vertex(v, change);
   for (const Index v : corners)
     if (means != Means::edges && change.is_none()) operations.move_to_face(v, change);
-  // Noted now, because the collapses below overwrite `change.read`.
+  // Copy `change.read` now: the collapses below overwrite it.
   for (const Index t : change.read)
     found.read.insert(found.read.end(), complex()[t].corners.begin(), complex()[t].corners.end());
   for (const Index v : corners)

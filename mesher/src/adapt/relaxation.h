@@ -31,7 +31,7 @@ class Relaxation {
   void collapse();
   /// Collapses edges shorter than this share of the target, without any improvement.
   void collapse_short(double below);
-  /// Improves tets and collapses edges where that has become possible.
+  /// Improves tets, collapses short edges, and improves tets again.
   void improve();
 
   /// Returns the number of changes.
@@ -47,8 +47,8 @@ class Relaxation {
   static constexpr unsigned kinds_of_means = 3;
   struct Proposal {
     Change change;  ///< may be none
-    /// The change depends on the tets at these vertices. Empty: the tet had changed or was gone. The tet's
-    /// index may be in use again, so a change is proposed again.
+    /// The change depends on the tets at these vertices. Empty: the tet had changed or was gone. Then a
+    /// change is proposed again, because the tet's index may have been reused.
     std::vector<Index> read;
   };
   struct Neighbours {
@@ -84,8 +84,8 @@ class Relaxation {
   ChangeTimes changes_{mesh().points.size()};   // when tets at a vertex were removed, made or changed
   ChangeTimes renewals_{mesh().points.size()};  // when tets at a vertex were made or changed
   OrderedSpeculation<Operations> speculation_{[this] { return Operations(edited_, rule_); }};
-  // Times at which the collapse of a vertex, or the improvement of a tet by each means, last failed. It is
-  // tried again only after a renewal there.
+  // Times at which the collapse of a vertex, or the improvement of a tet by each means, last failed. Either
+  // is tried again only after a renewal there.
   std::vector<std::uint32_t> kept_ = std::vector<std::uint32_t>(mesh().points.size());  // by vertex
   std::array<std::vector<std::uint32_t>, kinds_of_means> not_better_;                   // by tet
 };

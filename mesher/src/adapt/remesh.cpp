@@ -59,7 +59,7 @@ constexpr unsigned most_rounds_of_poor = 4;
 // edges to be short (ForcedEdges).
 constexpr double mostly = 0.1, least_beyond = 0.02;
 // If the smallest angle of a mesh, away from creases and narrow places, is at least this (degrees),
-// remeshing keeps it so.
+// remeshing keeps it at least this large.
 constexpr double good_angle = 15;
 
 class Remeshing {
@@ -129,7 +129,7 @@ class Remeshing {
   /// Gives the mesh the features of the given complex, in place of the features found on its own surface.
   void follow_complex() {
     TetMesh listed =
-        corners_of(given_).mesh;  // folds and borders between faces need not be curves of the complex
+        corners_of(given_).mesh;  // without the curves that `complex_of` found at folds and borders
     mesh().edges = std::move(listed.edges);
     mesh().edge_tag = std::move(listed.edge_tag);
     mesh().edge_curve.assign(mesh().edges.size(), none);
@@ -330,7 +330,7 @@ class Remeshing {
   }
 
   /// Improves poor tets by any operation that does not make the worst tet around worse. With `keep_vertices`,
-  /// vertices are inserted and removed only where an angle is above the largest one of thin tets.
+  /// vertices are inserted and removed only at angles above the bound for thin tets.
   void improve_shapes(EditableMesh& piece, bool keep_vertices) {
     ImproveOptions options = improve_options(2);
     options.bounds = kept_;
@@ -413,9 +413,9 @@ class Remeshing {
   void require_budget() {
     if (!is_full()) return;
     made_.result.status = MeshStatus::budget_hit;
-    made_.result.message =
-        fmt::format("{} vertices were reached; raise --max-vertices, or the sizes for a coarser mesh",
-                    options_.mesh.max_vertices);
+    made_.result.message = fmt::format(
+        "the limit of {} vertices is reached; raise --max-vertices, or the sizes for a coarser mesh",
+        options_.mesh.max_vertices);
     throw Ended();
   }
 

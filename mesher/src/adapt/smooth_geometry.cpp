@@ -87,8 +87,8 @@ class SmoothCurve {
  private:
   std::size_t end_of(Index segment) const { return (segment + 1) % points_.size(); }
 
-  /// Gives the end of an open curve the tangent of a circle there: the circle through the end and the next
-  /// point that has the tangent of the curve at the next point.
+  /// Gives the end of an open curve the tangent of the circle through it and the next point that touches the
+  /// curve at the next point.
   void end_like(std::size_t end, std::size_t next) {
     const Vector along = unit(points_[std::max(end, next)] - points_[std::min(end, next)]);
     bends_[end] = bends_[next];

@@ -97,8 +97,8 @@ class Smoothing {
     return false;
   }
 
-  /// Returns the mean of the centres of the tets at a vertex, weighted by their volumes in the metric, and
-  /// the sum of their mean ratios.
+  /// Returns the mean of the centres of the tets at a vertex, weighted by their volumes in the metric. Adds
+  /// their mean ratios to `sum`.
   Point centre_of_star(Index vertex, double& sum) const {
     Vector weighted{};
     double weights = 0;

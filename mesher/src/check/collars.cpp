@@ -197,10 +197,11 @@ class CollarCheck {
                                          [&](Index p) { return ball_at_[p] != none; });
       if (centres == mesh.tet_collar[t]) continue;
       const Point where = 0.5 * (to_check_.point(mesh.tets[t][0]) + to_check_.point(mesh.tets[t][1]));
-      findings_.add(guarantee::collar_cells, where, {t},
-                    "Tet {} at {} has {} corners that are centres of collars' balls, but its mark demands "
-                    "{}; a cell is missing or marked wrongly.",
-                    t, At{where}, centres, mesh.tet_collar[t]);
+      findings_.add(
+          guarantee::collar_cells, where, {t},
+          "Tet {} at {} has {} corners that are centres of collars' balls, but its mark as a cell of a "
+          "collar demands {}; correct the mark, or add the missing cell.",
+          t, At{where}, centres, mesh.tet_collar[t]);
     }
   }
 

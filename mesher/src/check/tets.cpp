@@ -125,7 +125,7 @@ void report_missed_angles(const MeshToCheck& to_check, const ThinCells& thin, Al
     const Point centre = corners_of(to_check.mesh, tet).centre();
     findings.add(guarantee::collar_dihedral, centre, {tet},
                  "Tet {} of a collar at {}, {}, has a dihedral angle of {:.6g} degrees, at most {:.6g} are "
-                 "allowed; a smaller size there resolves the crease better.",
+                 "allowed; choose a smaller size there to resolve the crease.",
                  tet, At{centre}, features, measure_tet(to_check.mesh, tet).max_dihedral,
                  to_check.options.bounds.collar_angle);
   });
@@ -136,7 +136,7 @@ void report_missed_angles(const MeshToCheck& to_check, const ThinCells& thin, Al
         guarantee::thin_angles, p.centre(), {tet},
         "Tet {} at {}, {}, has dihedral angles from {:.6g} to {:.6g} degrees and face angles up to {:.6g}; "
         "{:.6g} to {:.6g} degrees are allowed, because circumradius / shortest edge is {:.6g}, above {:.6g}. "
-        "If the mesh was made with another thin-angle, check it with the same value.",
+        "If the mesh was made with another thin-angle, check the mesh with that value.",
         tet, At{p.centre()}, features, quality.min_dihedral, quality.max_dihedral,
         largest_face_angle(p.a, p.b, p.c, p.d), thin.smallest_angle(tet), ThinCells::largest_angle,
         quality.radius_edge, to_check.options.bounds.radius_edge);

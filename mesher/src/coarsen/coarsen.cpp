@@ -38,32 +38,34 @@ constexpr unsigned most_repairs = 24;
 // Only vertices whose shortest edge is below this share of its target length get collapses with repairs,
 // because most of these collapses fail.
 constexpr double repaired_below = 0.65;
-// Vertices inside regions are tried if their shortest edge is below this share of its target length. After
-// refinement half of these vertices have a shortest edge of 0.75 to 0.8, which can hardly ever be collapsed.
+// Collapses of a vertex inside a region are tried if its shortest edge is below this share of the target
+// length. After refinement many of these vertices have a slightly longer one, which can hardly ever be
+// collapsed.
 constexpr double asked_inside_below = 0.75;
 constexpr unsigned most_sweeps = 8;
-// A pass that removes a smaller share of the tets ends its round. If a whole round removes a smaller share,
-// improvement before it found nothing more, and at least one in `collapses_per_repair` collapses needed
-// repairs, the next round tries all vertices again.
+// A pass that removes less than this share of the tets ends its round. A round is the last one if it
+// removes less than this share and the improvement at its beginning left nothing more to improve. But if at
+// least one in `collapses_per_repair` collapses needed repairs, another round first tries all vertices again.
 constexpr double least_share = 0.005;
 constexpr std::size_t collapses_per_repair = 10;
 constexpr std::size_t steps_between_reports = 4096;
 // If the log has more than one change for each `tets_per_logged_change` tets, visiting all tets costs less
 // than finding the tets at the changed vertices.
 constexpr std::size_t tets_per_logged_change = 24;
-// Items of one rank are cut into rows: one for each `items_per_row` items of all ranks, at most `most_rows`.
+// The items of each rank are cut into the same number of rows: the number of items of all ranks divided by
+// `items_per_row`, and at most `most_rows`.
 constexpr std::size_t most_rows = 256, items_per_row = 16;
-constexpr double ranks_of_lengths = 64;  // ranks for each unit of squared relative length
+constexpr double ranks_of_lengths = 64;  // ranks per unit of squared length in the metric
 
 constexpr double square(double x) { return x * x; }
 
-// Returns the rank of a quality: two ranks for each factor of two.
+// Returns the rank of a quality, from the worst up: two ranks for each factor of two.
 int rank_of_quality(double quality) { return quality > 0 ? std::ilogb(quality * quality) : INT_MIN; }
 
-// Sorts items by rank. Items of one rank, given in the order of memory, are cut into consecutive rows; then
-// come the first of each row, the second of each row, and so on. So the proposals of one batch are far apart,
-// and those of the next batch are near data that the caches hold. The exact order of lengths or qualities
-// would be slower.
+// Sorts items by rank. Items of one rank, given in the order of memory, are cut into consecutive rows; the
+// result has the first item of each row, then the second of each row, and so on. So the tets of one batch are
+// far apart, and the next batch needs data near those that the caches still hold. Sorting by exact lengths or
+// qualities would make coarsening slower.
 template <class Item>
 std::vector<Item> in_order(std::vector<Item> items) {
   std::ranges::stable_sort(items, {}, &Item::rank);
@@ -82,8 +84,8 @@ std::vector<Item> in_order(std::vector<Item> items) {
   return ordered;
 }
 
-/// A run of coarsening: collapses edges and improves tets, by rank, the most promising first. The result is
-/// the one that a single thread makes.
+/// A run of coarsening: collapses edges, shortest first, and improves tets, worst first; both by rank. The
+/// result does not depend on the number of threads.
 class Coarsening {
  public:
   Coarsening(EditableMesh& edited, const MeshOptions& made_with, const Execution& execution)
@@ -96,7 +98,8 @@ class Coarsening {
         speculation_([this] { return Proposer(edited_, bounds_, radius_edge_, metric_, changes_); }),
         execution_(execution) {}
 
-  // Returns the options without `edges_per_hole`: coarsening keeps holes round without it.
+  // Returns the options without `edges_per_hole`, because it need not reduce target sizes: the CurveSlides
+  // of the mesh keep enough edges at holes.
   static MeshOptions sizes_asked_for(MeshOptions options) {
     options.edges_per_hole = 0;
     return options;
@@ -143,8 +146,8 @@ class Coarsening {
     Index end;
   };
 
-  // Returns the vertices with a short edge where something has changed since they were last tried, or left
-  // out by RepairChances, in the same way, with or without repairs; shortest edges first.
+  // Returns the vertices that have a short edge and have changed since the last pass or, if their collapses
+  // may be repaired, since the last pass with repairs. Vertices with the shortest edges come first.
   std::vector<Candidate> find_candidates(bool repair) const {
     const std::uint32_t last = repair ? std::min(last_pass_, last_repairs_) : last_pass_;
     const auto ends = found_at_changed<ShortEdge>(last, [&](Index tet, std::vector<ShortEdge>& found) {
@@ -180,8 +183,8 @@ class Coarsening {
     return found;
   }
 
-  // Adds the ends of the short edges of a tet, each with the squared length of its edge, if a collapse of the
-  // end is tried.
+  // Adds the ends of a tet's short edges for which collapses are tried (`is_asked`), each with the squared
+  // length of its edge in the metric.
   void find_short_edges(Index tet, std::vector<ShortEdge>& ends) const {
     constexpr double surely_long = (1 + 1e-9) * collapsed_below;
     const auto& v = complex()[tet].corners;
@@ -195,7 +198,7 @@ class Coarsening {
     }
   }
 
-  // Returns whether a collapse is tried of a vertex with an edge of this squared length in the metric.
+  // Returns whether to try collapses of a vertex with an edge of this squared length in the metric.
   bool is_asked(Index vertex, double length) const {
     const unsigned dimension = mesh().features[vertex].dimension;
     return dimension != 0 && (dimension < 3 || length < square(asked_inside_below));
@@ -275,8 +278,9 @@ class Coarsening {
     for (Change& change : found.to_repair)
       if (collapse_and_repair(std::move(change), found.floor)) return chances_.note_success();
     chances_.note_failure();
-    // Record the failure only if it depends on the tets around alone, and all of these are known. Whether an
-    // edge of a curve can be spared depends on more, and not all tets at a pinched vertex are found.
+    // Record the failure only if it depends on nothing but the tets at `looked_at_`. A collapse on a curve
+    // also depends on the number of the curve's edges; and a pinched vertex has tets that the trials did not
+    // find.
     if (mesh().features[vertex].dimension > 1 &&
         std::ranges::none_of(looked_at_, [&](Index v) { return complex().pinched(v); }))
       failed_.note(vertex, looked_at_, changes_.now());
@@ -309,14 +313,14 @@ class Coarsening {
     return false;
   }
 
-  // Notes the corners of the faces of tets that a trial made: whether an edge of a patch may be flipped also
-  // depends on the faces around.
+  // Notes the corners of the mesh faces at tets that a trial made, because the faces around an edge also
+  // decide whether it may be flipped in its patch.
   void look_at_touched() {
     for (const Index t : touched_)
       if (complex()[t].alive) look_at_faces(t);
   }
 
-  // Notes the vertices that an undone trial examined, and the corners of the faces there.
+  // Notes the vertices that an undone trial examined, and the corners of the mesh faces of the tets there.
   void look_at_examined() {
     sort_uniquely(examined_);
     for (const Index v : examined_) {
@@ -356,7 +360,7 @@ class Coarsening {
     return found;
   }
 
-  // Improves tets. Returns true if nothing more helps, so that another attempt would change nothing.
+  // Improves tets in sweeps. Returns false if even the last permitted sweep changed tets.
   bool improve_all() {
     for (unsigned sweep = 0; sweep < most_sweeps; ++sweep)
       if (!improve_once()) return true;
@@ -407,7 +411,7 @@ class Coarsening {
     return any && !report_.cancelled;
   }
 
-  // Returns the quality; infinity where there is nothing to improve.
+  // Returns the quality of a tet; infinity if it is removed or surely good enough.
   double quality_if_improvable(Index tet) const {
     if (!complex()[tet].alive ||
         rule_.surely_exceeds(improved_below, complex().corners(tet), complex()[tet].corners))
@@ -419,8 +423,8 @@ class Coarsening {
     return changes_.any_since(when, complex()[tet].corners);
   }
 
-  // Collects the items that `look(tet, found)` adds to `found`. Calls it once, in any order, for each tet
-  // with a vertex that has changed since the given time; if many vertices have changed, for other tets, too.
+  // Calls `look(tet, found)` once, in any order, for each tet with a corner that has changed since this time,
+  // and returns the items that it adds to `found`. If many vertices have changed, calls it for all tets.
   template <class Found, class Look>
   std::vector<Found> found_at_changed(std::uint32_t since, const Look& look) const {
     const std::optional<std::vector<Index>> vertices = few_changed(since);
@@ -452,8 +456,8 @@ class Coarsening {
     return first;
   }
 
-  // Returns the vertices that have changed since this time and still exist, if they are few and the tets at
-  // each are connected by faces.
+  // Returns the vertices that have changed since this time and still have tets. Returns nothing if the log
+  // does not reach back so far, because many have changed, or if one of the vertices is pinched.
   std::optional<std::vector<Index>> few_changed(std::uint32_t since) const {
     if (since < log_begins_) return std::nullopt;
     const auto first =
@@ -490,7 +494,7 @@ class Coarsening {
     touched_vertices_.clear();
   }
 
-  // Records the changes since `forget_touched`, which are kept.
+  // Records the changes since `forget_touched`. Precondition: they are final, not on trial.
   void settle() {
     changes_.advance();
     if (log_.size() > complex().size() / tets_per_logged_change) {
@@ -512,7 +516,7 @@ class Coarsening {
     log_.push_back({changes_.now(), vertex});
   }
 
-  // Drops the balls, because coarsening has changed the cells of collars.
+  // Drops the collars' balls, because coarsening has changed their cells.
   void finish() {
     edited_.complex.forget_balls();
     report_.tets_after = tets_;
@@ -534,7 +538,7 @@ class Coarsening {
     std::uint32_t when;
     Index vertex;
   };
-  std::vector<Changed> log_;             // changes reported to `changes_` most recently
+  std::vector<Changed> log_;             // the latest changes reported to `changes_`, by time
   std::uint32_t log_begins_ = 1;         // the time from which the log is complete
   std::vector<Index> touched_;           // tets made or changed since `forget_touched`
   std::vector<Index> touched_vertices_;  // vertices of tets removed since then

@@ -5,8 +5,8 @@
 
 namespace collarmesh {
 
-/// Coarsens a mesh that is improved next, like `coarsen`, but does not write it back or mark thin tets, and
-/// runs in the caller's arena.
+/// Coarsens like the public `coarsen`, for callers that edit the mesh further: does not write the tets back
+/// or mark thin tets, and runs in the caller's thread arena.
 CoarsenReport coarsen(remeshing::EditableMesh& edited, const MeshOptions& made_with,
                       const Execution& execution);
 

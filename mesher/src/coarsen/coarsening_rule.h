@@ -7,20 +7,20 @@
 
 namespace collarmesh::remeshing::coarsening {
 
-/// The rule of coarsening. A tet of quality 1 or more keeps the bounds on thin tets; its quality tells how
-/// far its angles are within or beyond these bounds. A tet with an angle above the largest one allowed is
-/// worse than any tet without.
+/// The rule of coarsening. A quality of 1 or more means that a tet keeps the bounds on thin tets; the quality
+/// grows with the margins of its angles from these bounds. A tet with an angle above the largest permitted
+/// one is worse than any tet without such an angle.
 class CoarseningRule final : public AngleRule {
  public:
   enum class Mode {
-    final,  ///< new tets keep the guarantee: they are thin or within the radius-edge bound
+    final,  ///< new tets keep the guarantee (see `keeps_guarantee`)
     trial,  ///< new tets need not keep the guarantee yet
-    force   ///< new tets only need positive volume; quality does not single out tets with an angle above the
-            ///< largest one, nor tets that the bounds on cells forbid
+    force   ///< as `trial`; angles above the largest permitted one and tets that the bounds on cells forbid
+            ///< have no penalty in the quality
   };
 
-  /// No operation makes an edge longer than this factor times the target length, unless the edge that it
-  /// replaces was as long.
+  /// No operation makes an edge longer than this factor times the target length, unless the replaced edge was
+  /// at least as long.
   static constexpr double longest_new = 1.5;
 
   /// Keeps references to the bounds and to the metric.
@@ -37,8 +37,8 @@ class CoarseningRule final : public AngleRule {
     const bool fits = mode_ == Mode::force || !cells_.forbid_thin_tets() || cells_.allow(p, corners);
     return fits ? quality : CellBounds::forbidden * std::min(1.0, quality);
   }
-  /// Returns whether the quality is above this value, which is at least 1. Much cheaper than the quality; may
-  /// return false for some tets above it.
+  /// Returns true only if the tet's quality is above `quality`, which must be at least 1. Much cheaper than
+  /// computing the quality, but returns false for some better tets, too.
   bool surely_exceeds(double quality, const Corners& p, const std::array<Index, 4>& corners) const {
     return !cells_.lacks_interior_node(corners) && thin_.surely_exceeds(quality, p);
   }
@@ -53,6 +53,8 @@ class CoarseningRule final : public AngleRule {
   unsigned step_lengths() const override { return 2; }
   bool dissolves_collars() const override { return true; }
 
+  /// Returns whether the tet keeps the bounds on thin tets, or both the radius-edge bound and the bounds on
+  /// cells. `quality`: its quality.
   bool keeps_guarantee(const Corners& p, const std::array<Index, 4>& corners, double quality) const {
     return quality >= 1 || (bound_.holds(p) && cells_.allow(p, corners));
   }

@@ -11,18 +11,19 @@
 
 namespace collarmesh::remeshing::coarsening {
 
-/// A record of vertices whose collapses could not be repaired, and of the data that these trials depended on.
-/// As long as none of this data changes, the trials would fail again in the same way.
+/// A record of vertices for which every collapse with repairs failed. Each has a list of the vertices whose
+/// tets its trials examined: as long as no tet there changes, the trials would fail again in the same way.
 class FailedRepairs {
  public:
-  /// Records that all collapses of a vertex failed at this time, and the vertices whose tets they examined.
+  /// Records that all collapses of a vertex failed at the time `now`, after examining the tets at the
+  /// vertices `looked_at`.
   void note(Index vertex, std::vector<Index> looked_at, std::uint32_t now) {
     sort_uniquely(looked_at);
     failures_.insert_or_assign(vertex, Failure{now, std::move(looked_at)});
   }
 
-  /// Returns the vertices whose tets the failed trials examined, if nothing has changed there since.
-  /// Otherwise, and for a vertex without a record, returns none.
+  /// Returns the vertices whose tets the failed trials of `vertex` examined, if none of these vertices has
+  /// changed since. Returns an empty list otherwise, and for a vertex without a record.
   std::span<const Index> still_fails(Index vertex, const ChangeTimes& changes) const {
     const auto found = failures_.find(vertex);
     if (found == failures_.end()) return {};

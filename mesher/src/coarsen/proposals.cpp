@@ -10,12 +10,12 @@ namespace collarmesh::remeshing::coarsening {
 
 namespace {
 
-// A collapse may be repaired if it makes no tet worse than this.
+// Repairs are tried only for collapses after which each new tet has at least this quality.
 constexpr double repairable = 0.15;
 
 }  // namespace
 
-// Finds the collapses of a vertex. Lengths rule out most neighbours, at less cost than shapes.
+// Tests lengths before shapes, because they rule out most neighbours at less cost.
 void Proposer::collapses(Index vertex, bool repairs, VertexProposal& found) {
   found = {};
   find_neighbours(vertex);
@@ -53,8 +53,8 @@ Change Proposer::improvement_of(Index tet, Mode mode) {
     if (change.quality >= improved_below) break;
   }
   for (unsigned i = 0; i < 4 && change.is_none(); ++i) {
-    // Whether a move helps depends only on the tets at the vertex, so it is not tried again for each of these
-    // tets.
+    // Whether a move helps depends only on the tets at the corner. If it was tried for another of these tets
+    // and nothing has changed since, it would fail again.
     if (mode == Mode::final && stays(corners[i])) continue;
     operations_.move_vertex(corners[i], change);
     if (mode == Mode::final && change.is_none()) stayed_[corners[i]] = changes_.now();
@@ -86,8 +86,8 @@ void Proposer::find_neighbours(Index vertex) {
 }
 
 // Returns whether the new edges of a collapse have allowed lengths: none is shorter than the vertex's
-// shortest edge, and none is too long, unless the edge that it replaces is as long. The farthest neighbours
-// rule out most collapses.
+// shortest edge, and none is too long, unless the edge that it replaces is at least as long. Begins with the
+// farthest neighbours, which rule out most collapses.
 bool Proposer::lengths_fit(Index onto) const {
   return std::all_of(neighbours_.rbegin(), neighbours_.rend(), [&](const Neighbour& n) {
     if (n.vertex == onto) return true;

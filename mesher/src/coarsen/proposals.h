@@ -12,17 +12,17 @@ namespace collarmesh::remeshing::coarsening {
 
 /// The collapses of one vertex that the lengths of edges allow in the current mesh.
 struct VertexProposal {
-  Change change;  ///< a collapse that the shapes of tets allow, too, onto the nearest possible
-                  ///< neighbour; or none
+  Change change;  ///< the collapse onto the nearest neighbour for which the shapes of the new tets
+                  ///< are allowed, too; or none
   std::vector<Change> to_repair;  ///< collapses, at most one onto each neighbour, that leave tets to improve
   bool with_repairs = false;      ///< whether collapses that need repairs were looked for
-  double floor = 0;               ///< repairs must leave no changed tet worse than this
-  /// The proposal depends on the tets at the vertex and at these vertices. Empty for a vertex inside a
-  /// region, because there the link condition is not checked.
+  double floor = 0;               ///< the lowest quality that changed tets may have after repairs
+  /// The proposal depends on the tets at the vertex and at these vertices. New trials for a vertex inside a
+  /// region read no other vertices, because there the link condition is not checked.
   std::vector<Index> read;
 };
 
-/// A finder of possible changes, which it does not make. Each thread has its own.
+/// A finder of possible changes. It only reads the mesh. Each thread has its own.
 class Proposer {
  public:
   using Mode = CoarseningRule::Mode;
@@ -40,10 +40,11 @@ class Proposer {
   Proposer(const Proposer&) = delete;
   Proposer& operator=(const Proposer&) = delete;
 
-  /// Finds collapses of a vertex; if there is none, and `repairs` is set, collapses that need repairs.
+  /// Finds a collapse of a vertex. If none is allowed and `repairs` is set, finds collapses that need
+  /// repairs.
   void collapses(Index vertex, bool repairs, VertexProposal& found);
-  /// Returns a change that makes a tet better: the removal of an edge (the longest one whose removal leaves
-  /// good enough tets, or else the best one), or a move of a corner.
+  /// Returns a change that makes a tet better: the removal of its longest edge whose removal leaves good
+  /// enough tets; or else the best removal of an edge; or, if no removal helps, a move of a corner.
   Change improvement_of(Index tet, Mode mode);
 
  private:
@@ -67,15 +68,15 @@ class Proposer {
   Operations operations_;
   std::vector<Index> star_;            // tets at the current vertex
   std::vector<Neighbour> neighbours_;  // neighbours of that vertex, the nearest in the metric first
-  std::vector<Index> targets_;         // neighbours onto which lengths allow a collapse
-  double squared_shortest_ = 0;        // squared length of the shortest edge of that vertex
+  std::vector<Index> targets_;         // neighbours onto which edge lengths allow a collapse
+  double squared_shortest_ = 0;        // squared length of the vertex's shortest edge; absolute
   std::vector<std::uint32_t> stamps_;  // by vertex
   std::uint32_t stamp_ = 0;
-  std::vector<std::uint32_t> stayed_;  // by vertex: the time when no move of it was an improvement; 0: not
-                                       // tried yet
+  std::vector<std::uint32_t> stayed_;  // by vertex: the last time when no move of it was an improvement; 0:
+                                       // there was no such time
 };
 
-/// Tets below this quality are improved between the passes, until they are above it.
+/// Tets below this quality are improved between the passes of collapses.
 constexpr double improved_below = 1.3;
 
 /// Edges shorter than this share of the target length are collapsed where possible.

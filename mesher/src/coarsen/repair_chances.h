@@ -6,9 +6,9 @@
 
 namespace collarmesh::remeshing::coarsening {
 
-/// A choice of the vertices whose collapses are tried with repairs. Nearly all trials are in vain at thin
-/// walls that are meshed as coarsely as they can be, and each is costly. So after each `many` failures in a
-/// row only half as many vertices are chosen; after each success, twice as many again.
+/// A choice of the vertices whose collapses are tried with repairs. Each trial is costly, and nearly all fail
+/// at thin walls that are meshed as coarsely as they can be. So `many` failures in a row halve the share of
+/// the vertices that are chosen, and each success doubles it.
 class RepairChances {
  public:
   static constexpr std::size_t many = 100, most = 64;
@@ -31,8 +31,8 @@ class RepairChances {
   }
 
  private:
-  // A factor that mixes bits: neighbours in memory are at regular distances in the order of trials, so a
-  // choice of every n-th place would leave out whole neighbourhoods.
+  // A factor that mixes bits. Vertices that are neighbours in memory are at regular distances in the order of
+  // trials, so choosing every n-th place would leave out whole neighbourhoods.
   static constexpr std::uint64_t spread = 0x9E3779B97F4A7C15;
 
   std::size_t every_ = 1;     // about one in this many vertices is chosen

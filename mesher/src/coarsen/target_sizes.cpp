@@ -13,9 +13,9 @@ namespace collarmesh::remeshing::coarsening {
 
 namespace {
 
-// Growth of edge lengths per unit of distance in meshes with a radius-edge ratio of at most 2, as observed.
+// Growth of edge lengths per unit of distance that meshes with a radius-edge ratio of at most 2 show.
 constexpr double natural_growth = 0.7;
-// Growth of sizes between the faces of a gap, as in the refinement.
+// Growth of sizes per unit of distance if gaps reduce them, as in the refinement.
 constexpr double growth_in_gaps = 0.25;
 
 class TargetSizes {
@@ -78,8 +78,8 @@ class TargetSizes {
     return sizing_.triangle_size(patch, plc_.patches[patch].first_triangle + at, p);
   }
 
-  // Measures, as the refinement does, the distance of the surface from the features that it faces across a
-  // region: along the normal, among triangles turned towards it.
+  // Applies the sizes of gaps to the corners of faces on patches. Measures gaps as the refinement does: from
+  // the centre of a face across the region on each side to the surface that it faces there.
   void see_gaps() {
     const FacingSurfaces facing(plc_);
     FacingSurfaces::Crossings crossings;

@@ -11,7 +11,7 @@ namespace {
 constexpr double same_point = 1e-6;
 constexpr int most_projections = 40;
 
-// Returns whether a point in the plane of a triangle lies within it, up to rounding.
+// Returns whether a point is at most `slack` away from a triangle.
 bool within(const Point& p, const std::array<Point, 3>& t, double slack) {
   return squared_distance_to_triangle(p, t[0], t[1], t[2]) <= slack * slack;
 }
@@ -91,7 +91,8 @@ void CollarCorners::add_around(const CollarBall& ball) {
     const bool has_border =
         std::ranges::any_of(vertex.curves, [&](Index c) { return plc_.curve_on_patch(c, patch); });
     if (plc_.patches[patch].planar || has_border) continue;
-    // Find points of the patch on the sphere, then choose the three that are farthest from each other.
+    // Find points of the patch on the sphere, then choose up to three of them, each as far as possible from
+    // the previous ones.
     std::vector<Point> ring;
     for (const Sheet& sheet : sheets) {
       if (sheet.patch != patch) continue;

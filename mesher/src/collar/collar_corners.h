@@ -14,10 +14,11 @@ class CollarCorners {
   CollarCorners(const Plc& plc, const FeatureHierarchy& features, const CurvePaths& paths,
                 const CreaseSheets& sheets, std::vector<CornerPoint>& corners);
 
-  /// Finds the places where the sheets at a crease cross the circle of two consecutive balls' spheres.
+  /// Adds corner points on the circle in which the spheres of two consecutive balls meet: the places where
+  /// the sheets at the link's curve cross it.
   void add_on_circle(const CollarLink& link, const CollarBall& a, const CollarBall& b);
-  /// Finds three points where a smooth patch around a crease vertex (such as a cone around its apex) leaves
-  /// the vertex's ball.
+  /// Adds corner points for each smooth patch that has the ball's vertex in its interior (such as a cone with
+  /// its apex): up to three points where the patch leaves the ball.
   void add_around(const CollarBall& ball);
 
  private:

@@ -25,20 +25,21 @@ constexpr double largest_shrinkage = 0.02;
 // Radii change along a curve by at most this share of the distance along it, because a radius is at most a
 // third of the gap size, which changes no faster than the position.
 constexpr double radius_slope = 1.0 / 3;
-// The same share where flatness limits the radii: smaller, so that radii are even along rims of constant
-// curvature.
+// The same bound where flatness limits the radii. It is smaller, so that radii are nearly constant along rims
+// of constant curvature.
 constexpr double flat_radius_slope = 0.05;
-constexpr double sample_step = 0.5;  // distance of samples, in radii
+constexpr double sample_step = 0.5;  // distance between samples along a curve, in radii
 // Consecutive centres are at most this many radii apart. Then their distance d has d^2 <= r1^2 + r2^2, even
 // after shrinking: the lines from a point of the two balls' circle to their centres meet at an angle of at
 // most 90 degrees.
 constexpr double step_per_radius = 1.2;
-// Mesh vertices nearer than this, in radii, to the previous centre or to the last one do not become centres.
-// Where more than `step_per_radius` is divided into equal steps, these are at least this long, too.
+// Mesh vertices nearer than this, in radii, to the previous centre or to the curve's last centre do not
+// become centres. Parts longer than `step_per_radius` are divided into equal steps, which are at least this
+// long, too.
 constexpr double least_step_per_radius = step_per_radius / 2;
 
-// Lowers values until none exceeds a neighbour's by more than the slope allows, in both directions; goes
-// around twice if the curve is closed.
+// Lowers values until none exceeds a neighbour by more than `slope` times the distance between their
+// parameters; goes around twice if the curve is closed.
 void limit_slope(const std::vector<double>& parameters, double slope, bool closed,
                  std::vector<double>& values) {
   const std::size_t n = values.size();
@@ -172,8 +173,8 @@ double CollarPlacement::Profile::step(double parameter) const {
   return interpolated(parameters, steps, parameter);
 }
 
-// Returns places from the first sample to the last: the vertices that are not too near to others, and between
-// them places that are equally far apart, measured in radii.
+// Returns places from the first sample to the last: the vertices that are not too near to other centres, and
+// between them places at equal distances, measured in radii.
 std::vector<PlaceOnCurve> CollarPlacement::centres(Index curve, const Profile& profile,
                                                    std::span<const PlaceOnCurve> vertices) const {
   const double total = profile.steps.back();

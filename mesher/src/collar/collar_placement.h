@@ -14,17 +14,17 @@ namespace collarmesh {
 class CollarPlacement {
  public:
   /// Keeps references to all arguments. `system` has the creases; `gap` gives the gap sizes there, which
-  /// limit the balls.
+  /// limit the radii.
   CollarPlacement(const Plc& plc, std::span<const Point> points, GapSize& gap, const CollarOptions& options,
                   CollarSystem& system);
   /// Places balls on all creases. Returns false if it was stopped.
   bool place_all();
   /// Places the ball at a vertex. Precondition: the vertex belongs to a crease and has no ball yet.
   void place_at_vertex(Index vertex);
-  /// Places the balls on a curve. Some are centred on `vertices`, places of mesh vertices in their order
-  /// along the curve, so that no centre lies just beside a vertex. Vertices too near to others are skipped.
-  /// Preconditions: the curve is a crease and has no balls yet, and the vertices at its ends have their
-  /// balls.
+  /// Places the balls on a curve. `vertices` are places of mesh vertices, in their order along the curve.
+  /// Balls are centred on them, except where two centres would be too near to each other, so that centres do
+  /// not lie just beside mesh vertices. Preconditions: the curve is a crease and has no balls yet, and the
+  /// vertices at its ends have their balls.
   void place_on_curve(Index curve, std::span<const PlaceOnCurve> vertices = {});
 
  private:

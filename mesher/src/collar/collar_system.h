@@ -46,7 +46,8 @@ struct CornerPoint {
 struct CollarOptions {
   /// Returns an upper bound on the radius of a ball at a place on a vertex or curve.
   std::function<double(const Feature&, const Point&)> size;
-  /// Distance that the cells inside a ball may have from the smooth curves and patches that they replace.
+  /// The largest permitted distance between the cells inside a ball and the smooth curves and patches that
+  /// they replace.
   SurfaceTolerance tolerance{0};
   std::uint64_t seed = 0;
   /// Called from time to time with a lower bound on the final number of balls; if it returns true, the system
@@ -60,17 +61,19 @@ struct CollarOptions {
 };
 
 /// The union of balls that covers every crease, with the corner points on its surface (paper, section 3.2).
-/// Balls of different creases are disjoint; consecutive ones overlap deeply.
+/// Consecutive balls overlap deeply. Balls of two creases are disjoint unless one crease is an end of the
+/// other.
 class CollarSystem {
  public:
   CollarSystem() = default;
   /// Makes a system without balls for these creases; CollarPlacement places them. Keeps references to the
   /// complex and its points.
   CollarSystem(const Plc& plc, std::span<const Point> points, std::span<const Crease> creases);
-  /// Places balls on all creases: radius a third of the gap size, never more than the size allows, shrunk by
-  /// up to 2% (seeded) so that spheres are in general position. On smooth curves and patches the balls are so
-  /// small that the cells inside them stay within `options.tolerance`. Throws PlcError where a ball would be
-  /// too small (`too_small`). Cost: O((n + b) log n) for n elements of the complex and b balls.
+  /// Places balls on all creases. Their radii are at most a third of the gap size and at most `options.size`,
+  /// then shrunk by random shares of up to 2% (seeded), so that the spheres are in general position. On
+  /// smooth curves and patches the balls are so small that the cells inside them stay within
+  /// `options.tolerance`. Throws PlcError where a ball would be too small (`too_small`). Cost for n elements
+  /// of the complex and b balls: O((n + b) log n).
   CollarSystem(const Plc& plc, std::span<const Point> points, std::span<const Crease> creases,
                const CollarOptions& options);
 
@@ -87,7 +90,7 @@ class CollarSystem {
   const std::vector<Index>& crease_vertices() const { return crease_vertices_; }
   bool is_crease_vertex(Index vertex) const { return std::ranges::binary_search(crease_vertices_, vertex); }
   bool is_crease_curve(Index curve) const { return !crease_curve_.empty() && crease_curve_[curve]; }
-  /// Returns the ball at a crease vertex; none if there is no ball yet or the vertex is not a crease's.
+  /// Returns the ball at a crease vertex; none if it has no ball yet or belongs to no crease.
   Index ball_at_vertex(Index vertex) const { return vertex_ball_.empty() ? none : vertex_ball_[vertex]; }
   /// Declares that no more balls will come, and builds one tree over all of them, regardless of their
   /// creases.
@@ -100,7 +103,7 @@ class CollarSystem {
   bool contains(Index ball, const Point& p) const {
     return squared_distance(p, balls_[ball].centre) < balls_[ball].radius * balls_[ball].radius;
   }
-  /// Replaces `found` by balls that meet the ball B(p, radius): all of them, but no more than `most`.
+  /// Replaces `found` by the balls that meet the ball B(p, radius), but by at most `most` of them.
   void balls_meeting(const Point& p, double radius, std::size_t most, std::vector<Index>& found) const;
   /// Replaces `found` by the balls that meet the segment pq.
   void balls_on_segment(const Point& p, const Point& q, std::vector<Index>& found) const;
@@ -117,8 +120,8 @@ class CollarSystem {
   };
   /// Builds the tree over creases, which may have no balls yet.
   void plant(const Plc& plc, std::span<const Point> points);
-  /// Adds to the trees for queries the balls placed since the last call; all these balls are on this vertex
-  /// or curve.
+  /// Adds the balls placed since the last call to the trees that queries use. Precondition: all these balls
+  /// are on `crease`.
   void index_balls(const Feature& crease);
   /// Builds a tree over all balls from number `first` on. Returns their box.
   Box build_over_balls(Index first);
@@ -136,11 +139,12 @@ class CollarSystem {
   std::vector<Index> vertex_ball_;
   std::vector<Index> crease_vertices_;             // sorted
   std::unordered_set<std::uint64_t> consecutive_;  // keys of pairs of consecutive balls
-  // While balls are added, there is a tree over creases, and for each crease a tree over its balls;
-  // afterwards there is one tree over all balls.
+  // Until `complete`, there is a tree over creases, and for each crease a tree over its balls; afterwards
+  // there is one tree over all balls.
   Hierarchy<OfCreases> creases_;
-  std::vector<Index> leaves_;  // leaf in `creases_`, by vertex, then by curve; none if it is no crease
-  // Root of the tree over a crease's balls, by the leaf's item; none without balls.
+  std::vector<Index> leaves_;  // leaf in `creases_`, by vertex, then by curve; none if no crease is there
+  // By item of `creases_`, one per crease: root of the tree over the crease's balls, or none if it has no
+  // balls.
   std::vector<Index> root_of_;
   Hierarchy<CentredBox> trees_;  // over balls
   Index indexed_ = 0;            // number of balls in trees

@@ -18,9 +18,8 @@ struct Feature {
 };
 
 /// Bounding-volume hierarchy over the features of a complex. Below each feature is a hierarchy over its
-/// triangles, its segments or its point. A query that leaves out features, or that asks for one alone, never
-/// visits elements of features that do not count, so its cost is logarithmic however finely a feature is
-/// tessellated.
+/// triangles, its segments or its point. A query about some of the features visits no elements of the others,
+/// so its cost is logarithmic however finely a feature is tessellated.
 class FeatureHierarchy {
  public:
   /// Keeps references to both; `points` are the complex's, possibly in another frame.
@@ -59,7 +58,8 @@ class FeatureHierarchy {
   /// Adds a tree over these items. Returns its root.
   Index build(std::span<Index> items, std::span<const Box> boxes);
   double squared_distance_to(const Point& p, Index element) const;
-  /// Visits leaves, nearest first; `leaf(index)` may lower the bound.
+  /// Visits the leaves below `root` whose boxes are nearer to p than the bound, nearest first; `leaf(index)`
+  /// may lower the bound.
   template <class Leaf>
   void descend(Index root, const Point& p, double& squared_bound, const Leaf& leaf) const;
 

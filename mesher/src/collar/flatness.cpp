@@ -18,11 +18,11 @@ constexpr double deviation_per_radius = 0.14;
 // The radius of a ball on a curve that is not straight is at most this share of the curve's length.
 constexpr double radius_per_length = 1.0 / 8;
 // Another piece of a feature counts like a feature that does not contain the centre: radii are at most a
-// third of the distance to it. A point of a curve is on another piece if its distance along the curve exceeds
-// `detour` times its distance through space.
+// third of the distance to it. A point of a curve is on another piece if its distance from the centre along
+// the curve exceeds `detour` times its straight distance.
 constexpr double pieces_per_radius = 3;
 constexpr double detour = 1.5;
-// Positions along a chord at which it is compared with the feature.
+// Places on a chord, as shares of its length, where it is compared with the feature.
 constexpr std::array<double, 3> chord_shares{0.25, 0.5, 0.75};
 constexpr std::size_t most_spokes = 16;  // most edges from the ball's centre that are compared with a patch
 constexpr double rounding = 1e-6;        // tolerance of lengths, relative to the ball's radius
@@ -40,8 +40,8 @@ bool Flatness::matters_on(Index curve) const {
          std::ranges::any_of(c.patches, [&](Index patch) { return !plc_.patches[patch].planar; });
 }
 
-// Shrinks a radius until the deviation is allowed. On a smooth feature the deviation grows with the square of
-// the radius, at a bend linearly.
+// Returns the radius, shrunk until the deviation at it is permitted. On a smooth feature the deviation grows
+// with the square of the radius, at a bend linearly.
 template <class Deviation>
 double Flatness::shrunk(double radius, double tolerance, const Deviation& deviation) {
   for (int step = 0; step < most_steps; ++step) {
@@ -64,7 +64,7 @@ double Flatness::off_chord(Index curve, double from, double to) const {
 }
 
 // Returns how far the chord of a sheet deviates from its patch. The chord leads from the centre to the
-// patch's point nearest to the place at `radius` in the sheet's direction.
+// patch's point nearest to centre + radius * direction.
 double Flatness::off_patch(const Sheet& sheet, const Point& centre, double radius) const {
   return off_spoke(sheet.patch, centre,
                    features_.nearest_point({2, sheet.patch}, centre + radius * sheet.direction));
@@ -103,7 +103,8 @@ double Flatness::off_arc(Index patch, const Point& centre, double radius) const 
   return largest;
 }
 
-// Returns the distance to pieces of the curve other than the one through the given position, up to `reach`.
+// Returns the distance from the point at `parameter` to the nearest other piece of the curve, at most
+// `reach`.
 double Flatness::other_arcs(Index curve, double parameter, double reach) const {
   const Point p = paths_.point(curve, parameter);
   const double length = paths_.length(curve);
@@ -118,9 +119,9 @@ double Flatness::other_arcs(Index curve, double parameter, double reach) const {
   });
 }
 
-// Returns the distance, up to `reach`, to other sheets of the patch: to triangles that are not connected, by
-// triangles that meet the ball B(centre, reach), to the triangles with both given points (at a vertex, the
-// same point twice).
+// Returns the distance from the centre to the nearest other sheet of the patch, at most `reach`. A triangle
+// is on another sheet if no path across sides that meet the ball B(centre, reach) leads from it to a triangle
+// with both `points` (at a vertex, the same point twice).
 double Flatness::other_sheets(Index patch, const Point& centre, double reach,
                               const std::array<Index, 2>& points) const {
   struct Side {

@@ -9,7 +9,7 @@ namespace collarmesh {
 
 /// A limit on the radius of a ball at a crease, so that straight edges and flat triangles can replace the
 /// curved features inside it. Inside the ball the features deviate from their chords by no more than the
-/// distance tolerance; the ball meets its curve in one arc and each smooth patch in one piece; its radius is
+/// distance tolerance; the ball meets its curve in one arc and each smooth patch in one piece; the radius is
 /// at most a third of the distance to other pieces of these features.
 class Flatness {
  public:
@@ -19,7 +19,7 @@ class Flatness {
 
   /// Returns whether the curve or a patch at it is curved.
   bool matters_on(Index curve) const;
-  /// Returns the largest allowed radius, up to `radius`.
+  /// Return the largest permitted radius of a ball there, at most `radius`.
   double radius_on_curve(Index curve, double parameter, double radius) const;
   double radius_at_vertex(Index vertex, double radius) const;
 

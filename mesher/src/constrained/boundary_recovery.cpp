@@ -244,8 +244,8 @@ bool BoundaryRecovery::reduce(const std::function<std::optional<int>()>& change)
   return false;
 }
 
-/// Recovers an edge, or divides it. If changes to this depth do not suffice, the edge waits until the others
-/// are done.
+/// Recovers an edge, or divides it. If changes to the edge's depth do not suffice, puts it at the end of the
+/// queue with a larger depth.
 void BoundaryRecovery::recover_edge(const EdgeToDo& edge) {
   const auto [a, b, depth] = edge;
   const InTheWayOfEdge obstacles(mesh_, a, b);
@@ -336,8 +336,8 @@ bool BoundaryRecovery::clear_edge(const std::vector<CrossedFace>& crossed, const
 
 /// Adds a point on an edge: at a crossing with a face, preferably near the edge's middle. A rounded crossing
 /// may lie beyond a feature, so that it cannot be inserted. Then tries the middles of the parts of the edge
-/// beside the crossings, and last places up to `most_errors` rounding errors away from the crossings. Returns
-/// none if no place can be used.
+/// beside the crossings and, if these fail, places up to `most_errors` rounding errors away from the
+/// crossings. Returns none if no place can be used.
 Index BoundaryRecovery::divide_at_crossing(Index a, Index b, std::vector<CrossedFace>& crossed) {
   if (++added_ > most_added_) fail(a, "An edge");
   std::ranges::sort(crossed, {}, [](const CrossedFace& c) { return std::fabs(c.place - 0.5); });
@@ -379,8 +379,8 @@ std::array<std::pair<double, Index>, 2> BoundaryRecovery::places_beside(
       {{0.5 * (before + face.place), face.face.tet}, {0.5 * (face.place + behind), mesh_.beyond(face.face)}}};
 }
 
-/// Adds a point inside a tetrahedron that the edge crosses, so that the mesh can be changed there; or beside
-/// it, because tetrahedra between points in one plane are as thin as rounding errors and cannot hold a point.
+/// Adds a point inside a tetrahedron that the edge crosses, so that the mesh can be changed there. If none
+/// can hold a point, as between coplanar points, adds the point beside one of them.
 bool BoundaryRecovery::add_room(const std::vector<CrossedFace>& crossed) {
   const auto add = [&](const CrossedFace& c, const Vector& off) {
     Point sum;
@@ -433,7 +433,7 @@ void BoundaryRecovery::recover_facet(Index facet) {
   }
 }
 
-/// Finds the edges that pass through a triangle, beginning beside its first edge.
+/// Finds the edges that pass through a triangle, beginning around one of its sides.
 std::vector<BoundaryRecovery::Ends> BoundaryRecovery::find_piercing(const Facet& facet,
                                                                     const Obstacles& obstacles) const {
   std::vector<Ends> found;

@@ -24,7 +24,7 @@ struct Facet {
 
 /// A way to recover features. Rounded points may make the recovery fail in one way but not in another.
 struct RecoveryWay {
-  bool turns_first = false;  ///< flip missing edges between facets in one plane before points divide them
+  bool turns_first = false;  ///< flip a missing edge between coplanar facets, if possible, before dividing it
   bool reversed = false;     ///< recover the edges in the reverse order
 };
 
@@ -99,7 +99,7 @@ class BoundaryRecovery {
   std::vector<Facet> facets_;
   std::deque<EdgeToDo> edges_to_do_;
   std::deque<Index> facets_to_do_;
-  std::unordered_set<std::uint64_t> turned_;  // edges flipped because nothing else helped
+  std::unordered_set<std::uint64_t> turned_;  // edges that `turn_once` has tried to flip
   std::size_t added_ = 0, most_added_;
 };
 

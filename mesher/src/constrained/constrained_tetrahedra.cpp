@@ -62,7 +62,7 @@ class Labels {
     throw PlcError(message, {{PlcFault::Kind::open_boundary, message, {}, p}});
   }
 
-  /// Returns the region on the side of a facet where this tetrahedron is.
+  /// Returns the region on this tetrahedron's side of a facet.
   Index beside(const Tetrahedra::Face& face, const Facet& facet) const {
     const Plc::Patch& patch = plc_.patches[facet.patch];
     const auto& [a, b, c] = facet.corners;
@@ -128,7 +128,7 @@ class Extraction {
     for (const Index v : corners) made_.features[v] = {2, facet.patch};
   }
 
-  /// Adds the edges on curves. A curve outside all regions has none, because no tetrahedron there is kept.
+  /// Adds the edges on curves, except on curves outside all regions, where no tetrahedron is kept.
   void add_edges() {
     std::vector<std::uint64_t> of_tets;
     of_tets.reserve(6 * made_.tets.size());
@@ -159,7 +159,7 @@ class Extraction {
   std::vector<Index> number_;
 };
 
-/// Makes the tetrahedra in one way. Returns an empty mesh if the run was cancelled.
+/// Makes the tetrahedra by one way of recovery. Returns an empty mesh if the run was cancelled.
 ConstrainedTetrahedra recovered(const Plc& plc, const RecoveryWay& way, const Execution& execution) {
   Tetrahedra mesh(plc.points);
   BoundaryRecovery recovery(mesh, plc, way);

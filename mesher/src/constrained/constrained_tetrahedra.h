@@ -12,10 +12,10 @@ struct ConstrainedTetrahedra {
   std::size_t added_points = 0;  ///< points added because features could not be recovered otherwise
 };
 
-/// Makes tetrahedra from a complex's points, with its facets and segments as faces and edges: the Delaunay
-/// tetrahedra, changed where facets or segments are missing. Their shapes and sizes follow from the complex;
-/// their number is about that of its triangles, however near features are to each other. Throws PlcError if
-/// features intersect, or are so near each other that rounded points cannot separate them.
+/// Makes the Delaunay tetrahedra of a complex's points, and changes them where facets or segments are
+/// missing. Shapes and sizes of the tetrahedra follow from the complex; their number is about that of its
+/// triangles, however near features are to each other. Throws PlcError if features intersect, or are so near
+/// each other that rounded points cannot separate them.
 ConstrainedTetrahedra constrained_tetrahedra(const Plc& plc, const Execution& execution = {});
 
 }  // namespace collarmesh

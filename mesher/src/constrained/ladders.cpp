@@ -26,8 +26,8 @@ constexpr double narrow = 4;
 // Limit of added points: `rail_points_per_point` times the number of points of the complex, plus
 // `some_rail_points`.
 constexpr std::size_t rail_points_per_point = 100, some_rail_points = 20'000;
-// Sums of opposite angles nearer to half a circle than `open_choice` leave the choice of the diagonal open;
-// `rounding_of_angles` is a margin for rounding. Radians.
+// If the sum of the angles opposite a diagonal differs from pi by at most `open_choice`, both diagonals are
+// equally good. `rounding_of_angles` is a margin for rounding. Radians.
 constexpr double open_choice = 1e-3, rounding_of_angles = 1e-6;
 constexpr unsigned most_flips_per_triangle = 20;
 
@@ -136,8 +136,8 @@ class Ladders {
     return *std::ranges::find_if(p, [&](Index v) { return v != a && v != b; });
   }
 
-  /// Finds the quadrilateral of an edge. Returns false unless replacing the edge by the other diagonal is
-  /// possible and moves the surface by little.
+  /// Finds the quadrilateral of an edge. Returns false unless the edge can be replaced by the other diagonal
+  /// and this moves the surface by no more than `may_move_` permits.
   bool find_flat_quad(std::uint64_t key, Quad& quad) const {
     const auto found = edges_.find(key);
     if (found == edges_.end()) return false;
@@ -294,8 +294,8 @@ class Ladders {
     }
   }
 
-  /// Chooses the diagonal along the given direction where both diagonals of a cell are equally good, so that
-  /// diagonals on opposite walls do not cross.
+  /// If both diagonals of a quadrilateral are equally good, chooses the one that extends farther in the given
+  /// direction, so that diagonals on opposite walls do not cross.
   void choose_diagonals() {
     const std::vector<std::uint64_t> keys = keys_;
     for (const std::uint64_t key : keys) {
@@ -341,7 +341,7 @@ class Ladders {
   Index first_point_;  // the first point that was added
   std::vector<Triangle> triangles_;
   std::unordered_map<std::uint64_t, Edge> edges_;
-  std::vector<std::uint64_t> keys_;  // keys of all edges, also of former ones, in order; some more than once
+  std::vector<std::uint64_t> keys_;  // keys of all edges, also of removed ones, as they were made
   std::vector<Rail> rails_;
   std::unordered_map<std::uint64_t, std::vector<Index>> chains_;  // by rail: its points
 };

@@ -139,8 +139,8 @@ Index LocalChanges::insert(const Point& p, std::vector<Index> cavity) {
   return none;
 }
 
-/// Adds tetrahedra until all sides of the cavity are visible from a point inside; returns false if that is
-/// not possible.
+/// Adds tetrahedra to the cavity until all its sides are visible from the point x inside it. Returns false if
+/// that is not possible.
 bool LocalChanges::grow(Index x, std::vector<Index>& cavity) const {
   for (std::size_t i = 0; i < cavity.size(); ++i)
     for (unsigned k = 0; k < 4; ++k) {

@@ -29,15 +29,14 @@ class LocalChanges {
   /// The next two functions return the increase of the number of obstacles, or nothing if the change is not
   /// possible.
 
-  /// Replaces the two tetrahedra at a face by three at the edge that joins the corners beyond it.
+  /// Replaces the two tetrahedra at a face by three at the edge that joins the corners opposite it.
   std::optional<int> remove_face(const Tetrahedra::Face& face, const Obstacles& obstacles);
   /// Removes an edge by the triangulation of its ring that has the fewest obstacles. If every triangulation
   /// makes a tetrahedron without positive volume, or adds more than `most` obstacles, removes other edges
-  /// around this edge first, recursively to this depth.
+  /// around this edge first, recursively to `depth` levels.
   std::optional<int> remove_edge(Index a, Index b, unsigned depth, const Obstacles& obstacles, int most);
 
-  /// Sets the number of further triangulated rings after which `remove_edge` no longer removes other edges
-  /// first.
+  /// Lets `remove_edge` triangulate this many more rings. From then on it removes no other edges first.
   void set_budget(std::size_t rings) { budget_ = rings; }
 
   /// Inserts a point in or near some tetrahedra: replaces these, and as many neighbours as necessary, by

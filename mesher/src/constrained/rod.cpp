@@ -23,8 +23,8 @@ constexpr double share_around = 0.75;
 constexpr std::size_t fewest_in_ring = 8, most_in_ring = 24;
 // The smallest permitted dihedral angle of tets, degrees: a little above the bound for thin tets.
 constexpr double least_angle = 8.2;
-// Largest permitted distance of the patch from chords, as measured, around a straight rod and around a bent
-// one, as a share of the tolerance.
+// Largest permitted measured distance of the patch from chords around a straight rod and around a bent one,
+// as shares of the tolerance.
 constexpr double share_measured = 0.95, share_measured_of_bent = 0.6;
 constexpr std::size_t rays_of_section = 16, most_sections = 200'000, fewest_rings_of_loop = 8;
 constexpr double step_in_radii = 1, rays_per_radius = 8;
@@ -132,7 +132,7 @@ bool Rod::is_thick() {
   return radius_ > thinner_than_size * size_ || length_ < least_length * radius_;
 }
 
-/// Returns the point of the patch nearest to `from` in a direction, within the length of rays.
+/// Returns the first point where a ray of length `reach_` from `from` meets the patch.
 Rod::Hit Rod::hit(const Point& from, const Vector& way) const {
   const Index root = hierarchy_->root();
   Hit nearest;
@@ -195,7 +195,7 @@ bool Rod::find_sections() {
   return false;
 }
 
-/// Returns the direction in which the axis leaves its last section, as if its curvature stayed the same.
+/// Returns the direction in which the axis leaves section `last`, if its curvature stays the same.
 Vector Rod::direction_after(std::size_t last) const {
   if (last < 2) return sections_[last].along;
   const Vector now = unit_of(sections_[last].centre - sections_[last - 1].centre),
@@ -231,8 +231,8 @@ bool Rod::finish_at_end() {
   return set_directions();
 }
 
-/// Begins at the middle of a chord of the body along any normal of the patch. This chord and the shortest one
-/// through its middle span the section.
+/// Begins the axis at the middle of a chord of the body along some normal of the patch. This chord and the
+/// shortest one through its middle span the section.
 bool Rod::begin_loop(RodSection& first) const {
   constexpr unsigned directions = 48;
   const auto [a, b, c] = hierarchy_->corners(0);
@@ -483,8 +483,8 @@ RodSection Rod::frame_at(double share) const {
   return section;
 }
 
-/// Returns the point of the curve around an end in a direction; its `triangle` is none if there is no
-/// such point.
+/// Returns the point of the curve around an end that lies in the direction `way` from the end's centre; its
+/// `triangle` is none if there is no such point.
 Rod::Hit Rod::on_curve(const RodEnd& end, const RodSection& section, const Vector& way) const {
   const std::vector<Index> loop = points_of(plc_.curves[end.curve]);
   const Vector beside = cross(section.along, way);

@@ -39,7 +39,7 @@ class Rod {
   Rod(const Plc& plc, const SurfaceTolerance& tolerance, double size, const Execution& execution,
       Index region, const std::vector<Index>& patches);
 
-  /// Returns whether the body may be a rod, by its patches, volume and surface.
+  /// Returns whether the body may be a rod, judged by its patches, volume and area.
   bool begin() {
     return patch_ != none && (planar_.empty() || planar_.size() == 2) && find_ends() && !is_thick();
   }
@@ -49,22 +49,22 @@ class Rod {
   bool find_vertices_around();
   /// Changes the number of vertices in a ring. Returns whether it is not too large.
   bool set_in_ring(std::size_t vertices);
-  /// Finds how far apart rings are: at most `most_radii` radii, and so near that edges along a bent axis use
-  /// at most `share_along` of the tolerance. The number of steps from ring to ring is a multiple of `times`.
-  /// Call it after `find_vertices_around`.
+  /// Finds how far apart rings are: at most `most_radii` radii, and so near that edges along a bent rod cut
+  /// it by at most `share_along` of the tolerance. The number of steps from ring to ring is a multiple of
+  /// `times`. Call it after `find_vertices_around`.
   void find_spacing(double most_radii = INFINITY, double share_along = 0.1, std::size_t times = 1);
-  /// Finds the vertices of all rings. If a pattern around the rod looks the same after each of
-  /// `parts_of_turn` parts of a turn (0: as many parts as a ring has vertices), the rings of a closed rod are
-  /// turned so that the pattern fits where the rod closes. Returns whether all were found, including the
-  /// vertices of the complex at the ends.
+  /// Finds the vertices of all rings. `parts_of_turn`: a pattern around the rod looks the same after each of
+  /// this many parts of a turn (0: as many parts as a ring has vertices). The rings of a closed rod are
+  /// turned so that the pattern fits where the rod closes. Returns whether all vertices were found, including
+  /// those of the complex at the ends.
   bool find_rings(std::size_t parts_of_turn);
 
-  /// Returns whether the faces between rings are as near to the patch as the tolerance asks.
+  /// Returns whether the faces between rings and the patch are within the tolerance of each other.
   bool faces_keep_tolerance() const;
 
-  /// Returns the fewest vertices that a rod of this length takes, after `begin`.
+  /// Returns the fewest vertices that a rod of this length takes. Call it after `begin`.
   std::size_t fewest_vertices() const;
-  /// Returns the number of vertices, after `find_spacing`.
+  /// Returns the number of vertices. Call it after `find_spacing`.
   std::size_t vertices() const {
     return is_loop() ? steps_ * (in_ring_ + 1) : steps_ * (in_ring_ + 1) + in_ring_ + 2;
   }
@@ -78,7 +78,7 @@ class Rod {
   double radius() const { return radius_; }
   /// Returns the length, as estimated from the surface.
   double length() const { return length_; }
-  /// Returns the largest curvature of the axis, after `find_axis`.
+  /// Returns the largest curvature of the axis. Call it after `find_axis`.
   double largest_bend() const;
 
   std::size_t in_ring() const { return in_ring_; }
@@ -88,8 +88,8 @@ class Rod {
   const std::vector<std::vector<Point>>& rings() const { return rings_; }
   /// Returns the points on the axis in the middle between neighbouring rings.
   const std::vector<Point>& axis() const { return axis_; }
-  /// Returns by how many parts of a turn the first ring of a closed rod lags behind the ring that would
-  /// follow the last one.
+  /// Returns by how many of the parts of a turn (see `find_rings`) the first ring of a closed rod lags behind
+  /// the ring that would follow the last one.
   std::size_t shift() const { return shift_; }
   /// Returns the section at a share of the rings (0: the first ring, 1: the last one). Turns its frame so
   /// that a ring there has its first vertex in the direction `across`.
@@ -138,7 +138,7 @@ class Rod {
   std::vector<RodSection> sections_;
   Vector aim_;  // direction from the axis to the complex's vertex at the second end
   std::size_t in_ring_ = 0, steps_ = 0, shift_ = 0, parts_of_turn_ = 1;
-  double turn_ = 0;  // the angle by which frames are turned over the whole length
+  double turn_ = 0;  // the angle by which frames are turned over the whole length, radians
   std::vector<std::vector<Point>> rings_;
   std::vector<Point> axis_;
 };

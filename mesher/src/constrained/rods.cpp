@@ -97,7 +97,7 @@ class Filling {
 };
 
 /// Returns the patches of each region; nothing unless each patch lies between a region and the outside, and
-/// each curve and vertex on a patch.
+/// each curve and vertex lies on a patch.
 std::optional<std::vector<std::vector<Index>>> patches_of_bodies(const Plc& plc) {
   std::vector<std::vector<Index>> bodies(plc.regions.size());
   for (Index p = 0; p < plc.patches.size(); ++p) {

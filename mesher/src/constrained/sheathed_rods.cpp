@@ -25,7 +25,7 @@ struct Layer {
 };
 
 /// The layers around a rod: the ring itself, and two wider ones with fewer vertices. With these radii the
-/// angles of all tets lie between 8.2 and 148 degrees.
+/// dihedral angles of all tets lie between 8.2 and 148 degrees.
 std::array<Layer, 3> layers_around(std::size_t in_ring) {
   constexpr std::size_t fewest = 6;
   constexpr double widest = 2.3, less_by_vertex = 0.05, times = 1.9;
@@ -81,8 +81,8 @@ class SheathFilling {
 
  private:
   // Every second vertex of the outermost layer is moved along the rod by this share of the distance between
-  // neighbouring circles. Otherwise the corners of the skin's quadrilaterals would lie on circles, and
-  // Delaunay tetrahedra beside it might have either diagonal.
+  // neighbouring circles. Otherwise the corners of each of the skin's quadrilaterals would lie on a circle,
+  // and Delaunay tetrahedra outside the skin might have either diagonal.
   static constexpr double shifted = 0.15;
   static constexpr std::size_t axis_layer = 3;  // the axis, as a layer of one vertex between rings
 
@@ -160,8 +160,8 @@ class SheathFilling {
   bool is_shifted(std::size_t layer, std::size_t k) const {
     return layer + 1 == layers_.size() && k % 2 == 1;
   }
-  /// Calls `visit` with the corners of the two triangles between two neighbouring vertices of a layer and
-  /// those of its next level.
+  /// Calls `visit` with the corners of the two triangles that join two neighbouring vertices of a level of a
+  /// layer to the same two of the next level.
   template <class Visit>
   void divide(std::size_t layer, std::size_t level, std::size_t k, const Visit& visit) const {
     const Index a = at(layer, level, k), b = at(layer, level, k + 1), c = at(layer, level + 1, k),
@@ -213,8 +213,8 @@ class SheathFilling {
     const auto a = [&](std::size_t level) { return at(pair, level, k); };
     const auto b = [&](std::size_t level) { return at(pair, level, k + 1); };
     const auto o = [&](std::size_t level) { return at(apex, level, of_apex); };
-    // Between two levels of the pair lies a pyramid, which is cut into two tets; at a level of the pair, a
-    // tet between one apex and the next.
+    // The column consists of a pyramid, cut into two tets, between neighbouring levels of the pair and, at
+    // each level of the pair, a tet that also has two neighbouring apices.
     if (is_apex_between) {
       const std::size_t by_step = levels(pair);
       for (std::size_t j = 0; j < steps_ * by_step; ++j)
@@ -254,7 +254,7 @@ class SheathFilling {
     const std::size_t outer = inner + 1, n = count(inner), m = count(outer);
     std::size_t i = 0, j = 0;
     while (i < n || j < m) {
-      // The vertex that comes next around the axis is the third corner.
+      // The third corner is the vertex, of either layer, that comes next around the axis.
       const bool steps_inside = j == m || (i < n && (2 * i + 1) * m <= (2 * j + 1) * n);
       if (steps_inside)
         add_column(inner, i++, outer, j, made_.around);
@@ -281,8 +281,8 @@ class SheathFilling {
   std::array<Index, 4> first_{};
 };
 
-/// Returns the planar patch that surrounds an end of a rod in its plane, on the outside of the region around;
-/// none if there is no such patch.
+/// Returns the planar patch that surrounds an end of a rod in its plane, between the region `around` and the
+/// outside; none if there is no such patch.
 Index host_of(const Plc& plc, const RodEnd& end, Index smooth, Index around) {
   const Plc::Patch& own = plc.patches[end.patch];
   if (own.regions[0] != 0 && own.regions[1] != 0) return none;
@@ -324,7 +324,7 @@ bool find_rod(const Plc& plc, Rod& rod, double size, SheathedRod& made) {
 /// Finds the rings of a rod. Returns the number of steps from ring to ring for each step along the other
 /// layers; 0 if no rings keep the tolerance.
 std::size_t find_rings(Rod& rod) {
-  constexpr std::size_t more = 4, most_odd = 12;  // larger odd numbers do not fit to the next layer
+  constexpr std::size_t more = 4, most_odd = 12;  // larger odd numbers do not fit the next layer
   const std::size_t fewest = rod.in_ring();
   for (const double share : shares_along)
     for (std::size_t in_ring = fewest; in_ring <= fewest + more && rod.set_in_ring(in_ring); ++in_ring) {

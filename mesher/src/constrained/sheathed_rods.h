@@ -12,8 +12,8 @@
 
 namespace collarmesh {
 
-/// A rod inside another region, with tetrahedra in the rod and in a sheath around it. Edges on the outside of
-/// the sheath are about as long as the distance between neighbouring rings of vertices around the rod.
+/// A rod inside another region, with tetrahedra in the rod and in a sheath around it. On the outside of
+/// the sheath, edges along and around the rod are at most about five radii of the rod long.
 struct SheathedRod {
   /// An end of the rod on a planar patch of the region around it.
   struct End {
@@ -27,14 +27,14 @@ struct SheathedRod {
   Index region = 0;                        ///< the rod
   Index around = 0;                        ///< the region around it
   Index patch = none;                      ///< the smooth patch between them
-  std::vector<End> ends;                   ///< two, or none for a ring
+  std::vector<End> ends;                   ///< two, or none for a closed rod
   std::vector<std::array<Index, 3>> skin;  ///< the outside of the sheath, with normals away from the rod
   double reach = 0;                        ///< largest distance of the sheath from the axis
-  std::vector<Point> axis;   ///< the axis from end to end; that of a ring repeats its first point
+  std::vector<Point> axis;   ///< the axis from end to end; that of a closed rod repeats its first point
   std::vector<Point> seeds;  ///< points on the axis, about twice the reach apart
 };
 
-/// Returns the thin rods of a complex that lie in another region, which alone surrounds them: closed rings,
+/// Returns the thin rods of a complex that lie in another region, which alone surrounds them: closed rods,
 /// and straight or bent rods both of whose ends lie in planar patches on the outside of that region. Leaves
 /// out rods that bend sharply, whose rings cannot keep the tolerance, or whose sheaths are wider than the
 /// size. Returns none if they would take too many vertices or if cancelled.

@@ -12,8 +12,8 @@ namespace collarmesh::constrained {
 
 namespace {
 
-// The box extends beyond the points' bounding box by this share of its size, so that its corners are far from
-// the points.
+// The box extends beyond the points' bounding box by this factor times the latter's diagonal, so that its
+// corners are far from the points.
 constexpr double box_margin = 1;
 constexpr Index box_corners = 8;
 

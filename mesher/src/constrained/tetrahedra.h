@@ -11,9 +11,9 @@
 
 namespace collarmesh::constrained {
 
-/// Tetrahedra that fill a box around some points, for changes that keep the box filled. Decisions are exact.
-/// The box's corners are the last eight of the initial points. A face of a tetrahedron may carry the number
-/// of a facet, which it keeps until `set_facet` changes it; no change may remove such a face.
+/// Tetrahedra that fill a box around some points. Changes keep the box filled; predicates are exact. The
+/// box's corners are the last eight of the initial points. A face of a tetrahedron may carry the number of a
+/// facet, which it keeps until `set_facet` changes it; `replace` must not remove such a face.
 class Tetrahedra {
  public:
   using Corners = std::array<Index, 4>;
@@ -69,14 +69,15 @@ class Tetrahedra {
   /// Replaces tetrahedra by others that fill the same space. Faces on the border of that space stay.
   void replace(std::span<const Index> old, std::span<const Corners> created);
 
-  /// Returns a mark. Changes after the mark can be undone in reverse order until `keep` is called.
+  /// Returns a mark for `undo_to`. It is valid until `keep` is called.
   std::size_t mark() const { return journal_.size(); }
+  /// Undoes all changes since the mark.
   void undo_to(std::size_t mark);
   /// Makes all changes permanent.
   void keep();
 
-  /// Returns whether these tetrahedra are positively oriented, and agree with their neighbours: each is the
-  /// other's neighbour across the same triangle, which carries one facet.
+  /// Returns whether these tetrahedra are positively oriented, and agree with each neighbour about the
+  /// triangle between the two and the facet that it carries.
   bool consistent(std::span<const Index> tets) const;
   /// Returns all tetrahedra.
   std::vector<Index> all() const;
@@ -127,7 +128,7 @@ class Tetrahedra {
 
   std::vector<Point> points_;
   std::vector<Tet> tets_;
-  std::vector<Index> tet_at_;  // by vertex: a tetrahedron at it; none if it is no corner
+  std::vector<Index> tet_at_;  // by vertex: a tetrahedron with this corner, or none
   std::vector<Index> free_;
   std::vector<Step> journal_;
   std::vector<Side> sides_;

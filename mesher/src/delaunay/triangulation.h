@@ -64,7 +64,7 @@ struct Renumbering {
 /// Delaunay triangulation of points inside a box, as flat arrays.
 /// The box's eight corners are vertices 0 to 7; everything stays inside, so there are no infinite cells. A
 /// cell is four vertices, positively oriented (`six_volume` > 0), and four neighbours; its circumsphere is
-/// stored with an error bound. Ties (cospherical points) are not in conflict. Cells are recycled;
+/// stored with an error bound. A point on a circumsphere is not in conflict. Cells are recycled;
 /// `generation` tells whether an id still means the same cell.
 /// Several threads may insert at once into blocks of vertices, one block each: see `divide`.
 class Triangulation {
@@ -130,10 +130,10 @@ class Triangulation {
   /// Divides the triangulation into blocks of vertices. `insertions` gives for each block the number of
   /// insertions that it gets memory for. Until the blocks are joined, callers may only insert into blocks,
   /// and may only read data that no other block changes: points; corners and spheres of cells with a vertex
-  /// of the reader's own block; neighbours of these cells across faces with such a vertex. `owners` gives the
-  /// block of each vertex, below `insertions.size()`, or `no_owner`; it grows with new vertices, and must
-  /// otherwise not change until the blocks are joined. The result does not depend on the threads, nor on
-  /// their timing.
+  /// of the reader's own block; neighbours of these cells across faces with a vertex of that block. `owners`
+  /// gives the block of each vertex, below `insertions.size()`, or `no_owner`; it grows with new vertices,
+  /// and must otherwise not change until the blocks are joined. The result does not depend on the threads,
+  /// nor on their timing.
   std::vector<Block> divide(std::span<const Index> insertions, Owners& owners);
   /// Joins the blocks and numbers their vertices, block by block.
   Renumbering join(std::vector<Block>& blocks);

@@ -55,7 +55,8 @@ struct ComplexDraft {
 
   Box bounds;
   double planar_tolerance = 0;   ///< permitted distance of a polygon's corners from its plane, absolute
-  double largest_deviation = 0;  ///< from the fitted plane or line, or by welding; absolute
+  double largest_deviation = 0;  ///< largest distance of a point from its fitted plane or line, or from the
+                                 ///< place where welding puts it; absolute
   Plc::Cleanup cleanup;
 
   /// Returns the distance by which rounding alone may move points off a plane.

@@ -7,8 +7,8 @@
 
 namespace collarmesh::facets {
 
-/// The undirected edges of some triangles, each with the triangle sides on it. Cost: O(n) time; about 14 n
-/// numbers of four bytes.
+/// The undirected edges of n triangles, each with the triangle sides on it. Cost: O(n) time; about 11 n
+/// numbers of four bytes for a closed surface.
 class EdgeTable {
  public:
   EdgeTable(std::span<const Corners> triangles, std::size_t point_count);

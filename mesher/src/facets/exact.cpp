@@ -55,7 +55,8 @@ bool same_side(const Point& a, const Point& b, const Point& c, const Point& d) {
 
 int compare_crossings(const Point& p, const Point& q, const std::array<Point, 3>& t0,
                       const std::array<Point, 3>& t1) {
-  // The parameter on triangle i is P / (P - Q); p and q span signed volumes P and Q with it.
+  // The parameter ri is P / (P - Q); P and Q are the signed volumes of the tets that triangle ti spans with p
+  // and q.
   const Rational p0 = exact_six_volume(t0, p), q0 = exact_six_volume(t0, q);
   const Rational p1 = exact_six_volume(t1, p), q1 = exact_six_volume(t1, q);
   assert(p0 * q0 < 0 && p1 * q1 < 0);

@@ -38,7 +38,8 @@ Vector area_vector(const std::vector<Point>& points, const std::vector<Index>& l
 
 class FacetTriangulator {
  public:
-  /// With `bent`, approximates facets that are not planar polygons; without, reports them as faults.
+  /// If `bent` is given, cuts facets that are not planar into triangles anyway and counts them there;
+  /// otherwise reports them as faults.
   FacetTriangulator(ComplexDraft& draft, Faults& faults, BentFacets* bent)
       : draft_(draft), faults_(faults), bent_(bent) {}
 
@@ -162,7 +163,7 @@ class FacetTriangulator {
   }
 
   // Cuts a convex quadrangle, the most frequent polygon, without a triangulation. Returns false if the facet
-  // is none.
+  // is no convex quadrangle.
   bool cut_convex_quadrangle(const Facet& facet) {
     if (facet.loops.size() > 1 || facet.loops[0].size() != 4 || !facet.segments.empty() ||
         !facet.points.empty() || !facet.holes.empty())

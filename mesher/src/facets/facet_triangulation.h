@@ -22,9 +22,9 @@ struct BentFacets {
   std::vector<Point> where;  ///< places of some of them
 };
 
-/// Cuts facets into triangles without reporting faults. Triangulates a polygon that is not planar in a
-/// projection along an axis or, if its edges cross there, as a fan from one of its corners. Leaves out a
-/// polygon without area.
+/// Cuts facets into triangles without reporting faults. A polygon that is not planar is triangulated in its
+/// projection along an axis. If its edges cross there, it becomes a fan of triangles from one of its corners.
+/// Leaves out polygons without area.
 BentFacets triangulate_any_facets(std::span<const PolygonSoup> soups, const PointMap& map,
                                   ComplexDraft& draft);
 

@@ -43,8 +43,8 @@ class ClusterFinder {
     }
   }
 
-  // Grows clusters from seeds, in order of decreasing size. Most triangles of a curved surface have no
-  // neighbour in their plane and are skipped.
+  // Grows clusters from seeds, the largest triangles first. Most triangles of a curved surface have no
+  // neighbour in their plane; they are no seeds.
   FlatClusters run() {
     std::vector<Index> order;
     for (Index t = 0; t < areas_.size(); ++t) {

@@ -229,7 +229,7 @@ class IntersectionFinder {
     return fmt::format("facet {} of {}", draft_.origins[i].facet, draft_.soup_names[draft_.origins[i].soup]);
   }
 
-  // Finds a corner of one simplex, not common, that lies on the other.
+  // Returns a corner that lies on the other simplex and is not common to both; none if there is none.
   Index touching_corner(const Pair& pair) const {
     for (unsigned k = pair.common; k < pair.second.size; ++k)
       if (on(pair.second.points[k], pair.first)) return pair.second.points[k];

@@ -187,9 +187,9 @@ class NearTouchingFinder {
     if (d < nearest.squared_distance) nearest = {d, 0.5 * (p + q)};
   }
 
-  // Takes the nearest points of the lines of two segments (Ericson: Real-Time Collision Detection, section
-  // 5.1.9) into account, if they lie within both segments; if not, an end of a segment is nearest, which
-  // other calls handle.
+  // Considers the nearest points of the lines through two segments (Ericson: Real-Time Collision Detection,
+  // section 5.1.9) if they lie within both segments. Otherwise an end of a segment is nearest; other calls
+  // consider the ends.
   static void keep_nearer_of_lines(Nearest& nearest, const Point& p, const Point& q, const Point& r,
                                    const Point& s) {
     const Vector u = q - p, v = s - r, w = p - r;

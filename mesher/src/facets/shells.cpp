@@ -47,7 +47,8 @@ class Fan {
   std::vector<Index> sides_;
 };
 
-// Returns the side of the triangle (front or back) that faces larger (or smaller) angles about the edge.
+// Returns the side of the triangle (front or back) that faces larger angles about the edge; if not `larger`,
+// the other one.
 Index side_towards(const ComplexDraft& draft, Index side, bool larger) {
   return ascending(draft.triangles, side) == larger ? front_side(side / 3) : back_side(side / 3);
 }

@@ -85,10 +85,9 @@ void require_range(const Box& box, Faults& faults) {
   if (extent > 0 && farthest <= largest_coordinate && extent < fewest_steps * 0x1p-52 * farthest)
     faults.add(
         PlcFault::Kind::bad_point,
-        fmt::format(
-            "The input is {:.2g} times its extent away from the origin, at {}: coordinates are too coarse "
-            "there for a mesh; move it towards the origin.",
-            farthest / extent, text(box.min)),
+        fmt::format("The distance of the input from the origin is {:.2g} times its extent, at {}: in double "
+                    "precision, coordinates there are too coarse for a mesh; move it towards the origin.",
+                    farthest / extent, text(box.min)),
         {}, box.min);
   const bool large = farthest > largest_coordinate;
   if (!large && (extent >= smallest_extent || extent == 0)) return;
@@ -100,8 +99,8 @@ void require_range(const Box& box, Faults& faults) {
       {}, box.min);
 }
 
-// Unites close points, which a sweep finds. Its direction is one to which faces of real parts are hardly ever
-// orthogonal, so that few points share a position along it.
+// Finds equal and close points by a sweep, and unites them. Faces of real parts are hardly ever orthogonal to
+// the direction of the sweep, so few points have the same position along it.
 DisjointSets find_close(const std::vector<Point>& points, const Box& bounds, double distance_limit) {
   const Vector direction{0.6180339887, 0.5381966011, 0.5731523012};
   const Point centre = bounds.centre();

@@ -21,8 +21,8 @@ bool is_complex(const PolygonSoup& soup);
 /// Puts the used points of all soups into the draft. Merges points closer than `distance` (relative to the
 /// diagonal of all points); chains of close points merge, too. Points that are merged get the place of the
 /// first one among them. Sets the draft's bounds and deviation. Points that are not finite and corners out of
-/// range become faults. Cost: O(n log n) unless many points are within `distance` of one plane across the
-/// sweep.
+/// range become faults. Cost: O(n log n), unless many points are within `distance` of one plane that is
+/// orthogonal to the direction of the sweep.
 PointMap weld_points(std::span<const PolygonSoup> soups, double distance, ComplexDraft& draft,
                      Faults& faults);
 

@@ -17,16 +17,17 @@ namespace {
 // The lowest quality of tets that first steps may make.
 constexpr double least_quality_on_way = 0.02;
 constexpr unsigned most_detours = 30;
-// Largest number of operations to try before the first detour is taken, and its increase with each detour
-// taken.
+// Largest number of operations to try before the first detour is taken, and the increase of this number with
+// each detour taken.
 constexpr std::size_t first_trials = 2000, trials_per_detour = 200;
 // Largest number of proposals for tets with angles near 180 degrees, each of which costs as much as several
 // trials.
 constexpr std::size_t most_obtuse = 2000;
 constexpr double least_detour_gain = 1e-3, rounding = 1e-9;
 
-// Compares two sorted lists from the worst entry up. Returns whether the first differing entry is larger in
-// `now`; a missing entry counts as good.
+// Compares two sorted lists of qualities from the worst up. Returns whether the first quality that differs is
+// larger in `now`, by at least `least_detour_gain`. Where one list has ended, its qualities count as
+// `wanted`.
 bool is_better(const std::vector<double>& now, const std::vector<double>& before, double wanted) {
   for (std::size_t i = 0; i < std::max(before.size(), now.size()); ++i) {
     const double was = i < before.size() ? before[i] : wanted, is = i < now.size() ? now[i] : wanted;
@@ -79,7 +80,7 @@ bool Detours::take_round(std::vector<Index>& tets, Effort effort, const std::fun
   return taken() > before;
 }
 
-// Removes good tets and repeated ones, and sorts the others by quality.
+// Removes good tets and duplicates, and sorts the others by quality.
 void Detours::sort_worst_first(std::vector<Index>& tets) const {
   std::vector<std::pair<double, Index>> poor;
   for (const Index t : tets)
@@ -105,9 +106,10 @@ void Detours::note_changes(std::vector<Index>& tets) {
   }
 }
 
-// Improves a tet by a single operation if one helps now. Otherwise takes the first detour after which all
-// changed tets are good and no more of them are thin than before; or else the best detour that is worth it,
-// judged first by whether it makes more tets thin, then by its worst tet. Returns whether the mesh changed.
+// Improves a tet by a single operation if one helps now. Otherwise takes the first detour that leaves only
+// good tets and does not make more tets thin. If there is none, takes the best detour that is worth it: one
+// that does not make more tets thin, if possible, and leaves the best worst tet. Returns whether the mesh
+// changed.
 bool Detours::help(Index tet, Effort effort) {
   if (Change change = propose(tet); !change.is_none()) {
     ++trials_;
@@ -136,8 +138,8 @@ bool Detours::help(Index tet, Effort effort) {
   return best.better && attempt(step, [](const Result&) { return true; }).taken;
 }
 
-// Returns whether to accept a result. Except as a last resort, more thin tets are accepted only if all
-// changed tets are good afterwards.
+// Returns whether to accept a result that makes the mesh better. Except as a last resort, it may make more
+// tets thin only if it leaves no changed tet poor.
 bool Detours::is_worth_it(const Result& result, Effort effort) const {
   return effort == Effort::last_resort || !result.more_thin || result.worst >= chooser_.wanted();
 }

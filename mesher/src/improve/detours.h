@@ -12,21 +12,23 @@
 namespace collarmesh::remeshing::improvement {
 
 /// Detours: sequences of operations for tets that no single operation improves. The first operation, at the
-/// tet or beside it, need not improve any tet; the tets that it makes are then improved for some steps. The
-/// result is kept if it is better than the mesh before, else undone. Meshes are compared from the worst tet
-/// up, so the mesh never returns to an earlier state.
+/// tet or beside it, need not improve any tet; a few further operations then improve the tets that it makes.
+/// The detour is kept if it makes the mesh better, else undone. Two states of the mesh are compared by their
+/// worst tets; if these are equal, by the next worst ones, and so on. So no state occurs twice.
 /// Uses one thread. Precondition: `OperationChooser::forget` was called, so that a repeated trial has the
 /// same result.
 class Detours {
  public:
-  /// Keeps all by reference. After `most_trials` tried operations, completes the current tet and stops.
+  /// Keeps references to the first three arguments. After trying `most_trials` operations or more, completes
+  /// the current tet and stops.
   Detours(EditableMesh& edited, OperationChooser& chooser, Operations& operations, std::size_t most_trials)
       : edited_(edited), chooser_(chooser), operations_(operations), most_trials_(most_trials) {}
 
-  /// Takes detours for these tets, and for poor tets that detours leave, where the number of vertices may
-  /// change. Takes the worst tet first; tries operations at the tet itself, then beside it; tries again after
-  /// a change at a corner, until nothing helps. Returns the number of detours taken. Calls `stopped` between
-  /// tets. Precondition: the mesh is prepared for trials.
+  /// Takes detours for these tets and for poor tets that detours leave, if the number of vertices may change
+  /// at them (`OperationChooser::may_change_vertices`). Begins with the worst tet, and with operations at the
+  /// tet itself, then beside it. Tries a tet again if something has changed at its corners. Ends if no detour
+  /// helps, or if `stopped`, called between tets, returns true. Returns the number of detours taken.
+  /// Precondition: the mesh is prepared for trials.
   std::size_t take_all(std::vector<Index> tets, const std::function<bool()>& stopped);
 
   /// Returns the number of operations tried so far.
@@ -44,13 +46,13 @@ class Detours {
   struct Result {
     bool better = false, taken = false;
     bool more_thin = false;  ///< more tets are thin than before the trial
-    double worst = 0;        ///< smallest quality of the changed tets, at most the wanted quality
+    double worst = 0;        ///< smallest quality of the changed tets, or the wanted quality if that is lower
   };
-  /// Where the first steps for a tet are tried. at_tet: at the tet itself; beside: at the tets across its
-  /// faces and edges; last_resort: at all of these tets; detours are then accepted even if more tets become
-  /// thin and some stay poor.
+  /// The tets at which the first steps for a poor tet are tried. at_tet: the tet itself; beside: the tets
+  /// across its faces and edges; last_resort: the tet and those beside it; detours are then accepted even if
+  /// they make more tets thin and leave poor ones.
   enum class Effort : std::uint8_t { at_tet, beside, last_resort };
-  /// By tet: the number of detours taken before it was last tried, plus 1; 0: not tried.
+  /// By tet: 1 plus the number of detours that had been taken when the tet was last tried; 0: not tried.
   using Asked = std::vector<std::uint32_t>;
 
   std::uint32_t taken() const { return changes_.now(); }
@@ -80,10 +82,10 @@ class Detours {
   bool ended_ = false;                                   // no trials remain, or the caller stopped it
   std::array<Asked, 3> asked_;                           // by Effort
 
-  std::vector<Index> changed_;  // tets that the last detour changed; some are removed
+  std::vector<Index> changed_;  // tets that the last detour changed; some may have been removed
 
   // State of the current trial.
-  std::vector<double> before_;  // qualities of the changed tets before the trial, at most the wanted one
+  std::vector<double> before_;  // qualities of the changed tets before the trial, each at most the wanted one
   std::size_t thin_before_ = 0;
   std::vector<Index> to_improve_;
 };

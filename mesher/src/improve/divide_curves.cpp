@@ -15,7 +15,8 @@ namespace {
 constexpr double much_longer = 1.5;
 constexpr double least_divided = 1e-4;  // least quality of new tets
 
-/// Returns the tet's longest edge on a curve if the tet has much shorter edges, else nothing.
+/// Returns the longest of the tet's edges on curves if it is much longer than the tet's shortest edge; else
+/// nothing.
 std::optional<std::array<Index, 2>> edge_to_divide(const TetComplex& complex, Index tet) {
   const auto& v = complex[tet].corners;
   const auto p = complex.corners(tet);

@@ -29,18 +29,19 @@ namespace {
 constexpr std::size_t tets_per_proposal = 2000;
 constexpr std::size_t most_proposals = 1024;
 constexpr std::size_t steps_between_reports = 1024;
-// The least relative gain of a move. Tets at walls stay poor however often their vertices move a little, so
-// small gains do not pay. In detours, which work on few tets, they may help.
+// The least relative gain in quality for which a vertex is moved. Tets at walls stay poor however often their
+// vertices move a little, so small gains do not pay. In detours, which work on few tets, they may help.
 constexpr double least_gain = 0.02, least_gain_in_detours = 1e-3;
 // Detours are taken if at most `few` tets, plus one in `tets_per_few` of all tets, need them; with more such
 // tets the wanted quality is out of reach.
 constexpr std::size_t few = 50, tets_per_few = 50;
-// The number of operations to try in detours: `trials`, plus one for each `tets_per_trial` tets.
+// Largest number of operations to try in detours: `trials`, plus one for each `tets_per_trial` tets.
 constexpr std::size_t trials = 4000, tets_per_trial = 50;
 
-/// A run of improvement: improves the tets below a quality, worst first. Several threads propose changes for
-/// the worst few tets; the changes are made one after the other, and proposals that touch an earlier change
-/// are made again. So the result does not depend on the number of threads.
+/// A run of improvement: improves the tets below the wanted quality, worst first. Several threads propose
+/// changes for a batch of the worst tets. Then one thread makes the changes, one after the other; a tet whose
+/// proposal depends on tets that have changed since waits for a later batch. So the result does not depend on
+/// the number of threads.
 class Improvement {
  public:
   Improvement(EditableMesh& edited, const ImproveOptions& options, const Execution& execution,
@@ -97,8 +98,9 @@ class Improvement {
     });
   }
 
-  // Finds poor tets, like find_poor_tets, in less time. Preconditions: since `poor_` was found, tets have
-  // changed only in batches after this one; `poor_` is in the order of tets.
+  // Finds all poor tets like find_poor_tets, but looks only at those in `poor_` and those changed in batches
+  // after `batch`. Preconditions: no other tets have changed since `poor_` was found; `poor_` is sorted by
+  // tet.
   void find_poor_tets_again(std::uint32_t batch) {
     assert(std::ranges::is_sorted(poor_, {}, &Item::tet));
     std::vector<Index> asked;
@@ -173,8 +175,8 @@ class Improvement {
     failed_in_[tet] = changes_.now();
   }
 
-  // Returns whether nothing has helped this tet and the tets on which a proposal may depend have not changed
-  // since: those at its corners and at the neighbours of the corners.
+  // Returns whether nothing helped this tet when it was last tried, and none of the tets on which a proposal
+  // may depend has changed since: those at its corners and at the neighbours of the corners.
   bool is_known_to_fail(Index tet) const {
     if (tet >= failed_in_.size() || failed_in_[tet] == 0) return false;
     const auto is_old = [&](Index v) { return !complex().pinched(v) && changes_.at(v) < failed_in_[tet]; };
@@ -192,8 +194,8 @@ class Improvement {
     for (const Index v : complex()[tet].corners) changes_.note(v);
   }
 
-  // Takes detours. Returns false if none was tried, so that `poor_` is still up to date. Precondition:
-  // `poor_` is up to date.
+  // Tries detours if few enough poor tets need them. Returns whether it did; if not, `poor_` stays up to
+  // date. Precondition: `poor_` is up to date.
   bool take_detours() {
     assert(std::ranges::all_of(poor_, [this](const Item& item) { return is_up_to_date(item); }));
     std::vector<Index> poor;
@@ -209,9 +211,10 @@ class Improvement {
     return true;
   }
 
-  // Returns whether the tets that the change replaces or has read are as they were when the batch began. The
-  // change depends on nothing else: places of corners, mesh faces, samples and curve edges only change with
-  // the tets there. This relies on complete stars; no change is proposed where stars are incomplete.
+  // Returns whether the tets that the change replaces, and the tets that were read to propose it, are as they
+  // were when the batch began. The change depends on nothing else: places of corners, mesh faces, samples and
+  // curve edges only change with the tets there. This requires complete stars, so no change is proposed at
+  // pinched vertices.
   bool is_untouched(const Change& change) const {
     const auto untouched = [&](Index t) { return complex()[t].alive && changed_in_[t] != changes_.now(); };
     return std::ranges::all_of(change.replacement.old, untouched) &&

@@ -11,8 +11,8 @@ namespace collarmesh::remeshing::improvement {
 
 namespace {
 
-/// The rule of thin tets, with two differences: a tet without an interior node is worse than any other, and
-/// the cells of collars may be replaced.
+/// The rule of thin tets, except that cells of collars may be replaced. With bounds that require interior
+/// nodes, a tet without one is worse than any tet with one.
 class InteriorRule final : public ShapeRule {
  public:
   InteriorRule(const EditableMesh& edited, const Bounds& bounds) : rule_(edited.tet_bounds(bounds)) {}
@@ -40,8 +40,8 @@ std::vector<Index> tets_to_go(const EditableMesh& edited, const InteriorRule& ru
   return found;
 }
 
-/// Returns the removal of an edge if it leaves tets within the bounds; otherwise the change that leaves the
-/// best tets.
+/// Returns the change of this tet that leaves the best tets. Tries removals of edges, then insertions on
+/// edges, then insertions in cavities, and stops at a kind that leaves only tets within the bounds.
 Change change_for(Operations& operations, const TetComplex& complex, Index tet) {
   constexpr double good = 1;
   const std::array<Index, 4> corners = complex[tet].corners;

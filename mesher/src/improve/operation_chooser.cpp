@@ -10,7 +10,7 @@ namespace collarmesh::remeshing::improvement {
 
 namespace {
 
-// An inserted vertex must raise the tets around it to this share of the wanted quality.
+// All tets at an inserted vertex must have at least this share of the wanted quality.
 constexpr double enough = 0.7;
 
 }  // namespace

@@ -9,8 +9,8 @@
 /// The conventions that the writer and the reader of .inp files share; Abaqus Keywords Reference Manual.
 namespace collarmesh::io {
 
-/// The numbers of the faces of elements (S1, S2, ...), by the side of our cell. A pyramid is written as a
-/// hexahedron whose last four corners are one node, because CalculiX has no pyramids.
+/// The numbers of the faces of Abaqus' elements (3 for S3), in the order of our cells' sides. A pyramid is
+/// written as a hexahedron whose last four corners are one node, because CalculiX has no pyramids.
 constexpr std::array<unsigned, 4> abaqus_tet_faces{3, 4, 2, 1};
 constexpr std::array<unsigned, 5> abaqus_prism_faces{1, 2, 3, 4, 5};
 constexpr std::array<unsigned, 5> abaqus_pyramid_faces{1, 3, 4, 5, 6};
@@ -21,7 +21,7 @@ constexpr std::span<const unsigned> abaqus_faces(CellKind kind) {
 }
 constexpr std::array<std::uint8_t, 8> abaqus_pyramid_order{0, 1, 2, 3, 4, 4, 4, 4};
 
-/// Prefix of our element sets by region of the complex; the region's number follows.
+/// Prefix of the name of our element set for a region of the complex; the region's number follows.
 constexpr const char* abaqus_volume_prefix = "VOLUME_";
 
 /// The name of the set of all elements, in lower case.

@@ -18,8 +18,9 @@ std::set<Index> nodes_of_side(const TetMesh& mesh, Tag tag) {
   return nodes;
 }
 
-/// Ties the nodes of the plus sides to the minus sides. Leaves out nodes of a front, which both sides share,
-/// and nodes that are tied to another patch at a junction, because a node can be dependent only once.
+/// Ties the nodes of the plus sides to the minus sides. Leaves out nodes on the front of a crack, which both
+/// sides share, and nodes at a junction of patches that are already tied to another patch, because a node can
+/// be dependent only once.
 void write_ties(FileWriter& out, const TetMesh& mesh, const Interfaces& interfaces, const NamesByTag& names) {
   std::set<Index> tied;
   for (const Sides& sides : interfaces.sides) {
@@ -42,8 +43,8 @@ void write_contacts(FileWriter& out, const Interfaces& interfaces, const NamesBy
         << names.at(sides.plus) << ", " << names.at(sides.minus) << '\n';
 }
 
-/// Cuts cohesive elements of second order into four, along their mid-edge nodes, because Abaqus has only
-/// elements of first order.
+/// Returns the i-th cohesive element; if it is of second order, four elements of first order that use its
+/// mid-edge nodes, because Abaqus has no cohesive elements of second order.
 std::vector<std::array<Index, 6>> straight_prisms(const Interfaces& interfaces, std::size_t i) {
   const auto& [a, b, c, p, q, r] = interfaces.prisms[i];
   if (interfaces.prism_mid_nodes.empty()) return {interfaces.prisms[i]};

@@ -40,7 +40,7 @@ struct Shares {
   std::map<std::size_t, Matrix> references;  ///< by pair
 
   /// Returns the shares of this node's image or, if `backwards`, those of the node whose image this node is.
-  /// `rows`: the rotation of this pair.
+  /// `rows`: the rotation matrix of the pair's motion, by rows.
   Shares moved(const Matrix& rows, std::size_t pair, bool backwards) const {
     const Matrix by = backwards ? transposed(rows) : rows;
     Shares result{product(by, root), {}};
@@ -64,8 +64,8 @@ class Equations {
   }
 
   void write() {
-    std::vector<Index> starts;  // first nodes of chains: nodes that are no images, then the rest, for
-                                // closed chains
+    std::vector<Index> starts;  // where chains may begin: nodes that are no images, then the other nodes,
+                                // because a closed chain consists of images
     for (const bool are_images : {false, true})
       for (const auto& each : steps_)
         if (images_.contains(each.first) == are_images) starts.push_back(each.first);

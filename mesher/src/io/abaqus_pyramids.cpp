@@ -8,8 +8,8 @@ namespace collarmesh::io {
 
 namespace {
 
-// Nodes of the halves of a pyramid whose diagonal begins at its first corner; `middle_node` is the node in
-// the middle of the base.
+// The nodes of the two tets into which a pyramid is cut along the diagonal of its base from its first corner;
+// `middle_node` is the node in the middle of the base.
 constexpr std::uint8_t middle_node = 13;
 constexpr std::array<std::array<std::uint8_t, 10>, 2> nodes_of_halves{
     {{0, 1, 2, 4, 5, 6, middle_node, 9, 10, 11}, {0, 2, 3, 4, middle_node, 7, 8, 9, 11, 12}}};
@@ -43,7 +43,7 @@ std::size_t HalvedPyramids::first_corner(Index pyramid) const {
   return static_cast<std::size_t>(std::min_element(corners.begin(), corners.begin() + 4) - corners.begin());
 }
 
-/// Returns the nodes of a pyramid with the smallest corner of its base first.
+/// Returns the nodes of a pyramid, turned so that the corner of its base with the smallest index comes first.
 CellNodes HalvedPyramids::turned(Index pyramid) const {
   const CellNodes nodes = nodes_of(CellKind::pyramid)(mesh_, pyramid);
   const std::size_t first = first_corner(pyramid);

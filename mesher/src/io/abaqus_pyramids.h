@@ -10,13 +10,14 @@
 #include "io/file_writer.h"
 
 /// Pyramids of second order in .inp files. Neither CalculiX nor Abaqus has them, and hexahedra of second
-/// order with equal nodes would not fit the triangles of tets. Each pyramid becomes two tets, C3D10, with a
-/// node in the middle of its base. The values at this node are interpolated from the base's eight nodes, as
-/// in the middle of a prism's side. Linear displacements and temperatures are exact then if the base is a
-/// parallelogram, and nearly so if it almost is one.
+/// order with coinciding nodes would not conform to the triangles of tets. Each pyramid becomes two tets,
+/// C3D10, with a node in the middle of its base. The values at this node are interpolated from the base's
+/// eight nodes, as in the middle of a prism's side. A solution that is linear in space is then exact if the
+/// base is a parallelogram, and nearly exact if the base almost is one.
 namespace collarmesh::io {
 
-/// The set of the halves of pyramids, in pairs; the name is in lower case.
+/// The name, in lower case, of the set of the halves of pyramids. The two halves of a pyramid follow each
+/// other in it.
 constexpr const char* abaqus_halves = "halves_of_pyramids";
 
 /// The two tets of each pyramid of a mesh of second order; empty for first order.
@@ -34,7 +35,8 @@ class HalvedPyramids {
     std::size_t half;
     unsigned number;  ///< 1: S1
   };
-  /// Returns the sides of halves that make up a side of the pyramid: two for its base, one for others.
+  /// Returns the sides of halves that make up a side of the pyramid: two for its base, one for any other
+  /// side.
   std::vector<Side> sides(Index pyramid, std::size_t side) const;
 
   /// Writes the equations for the nodes in the middle of bases: their displacements and temperatures follow
@@ -57,8 +59,8 @@ class HalvedPyramids {
 std::optional<std::vector<Index>> join_pyramids(const std::vector<std::array<Index, 2>>& halves,
                                                 TetMesh& mesh);
 
-/// Returns the side of the pyramid to which a side of a half belongs; nothing for the second half's part of
-/// the base.
+/// Returns the side of the pyramid to which side `number` (1: S1) of a half belongs; nothing for the side
+/// between the halves and for the second half's part of the base.
 std::optional<std::size_t> side_of_pyramid(std::size_t half, unsigned number);
 
 }  // namespace collarmesh::io

@@ -1,7 +1,7 @@
 // Reads the input format of Abaqus and CalculiX (.inp): tetrahedra, prisms and pyramids of solids (C3D4,
 // C3D10, C3D6 and their variants), triangles, quadrangles and lines of shells, membranes, beams and trusses,
-// and surfaces of element sides. Element sets and surfaces become tags, by name if the name is ours, or else
-// by their order in the file.
+// and surfaces of element sides. Element sets and surfaces become tags: if the name is one that we write, the
+// tag in it, otherwise a number by their order in the file.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -37,7 +37,7 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
-/// Splits a line at commas into fields; a comma at the end adds none.
+/// Splits a line at commas into fields; a comma at the end adds no empty field.
 void split(std::string_view line, std::vector<std::string_view>& fields) {
   fields.clear();
   while (!line.empty()) {
@@ -81,7 +81,7 @@ class Lines {
 struct Keyword {
   std::string name;
   std::map<std::string, std::string, std::less<>> parameters;
-  std::string set;  ///< the name of the set or surface that it begins, as written
+  std::string set;  ///< the name of the set or surface that the line begins, as written
 
   explicit Keyword(std::string_view line) {
     std::vector<std::string_view> fields;
@@ -103,7 +103,8 @@ struct Keyword {
   }
 };
 
-/// A type of elements. Some hexahedra are pyramids (`abaqus_pyramid_order`).
+/// A type of elements. Hexahedra are accepted only as pyramids with coinciding nodes
+/// (`abaqus_pyramid_order`).
 struct ElementType {
   std::string_view prefix;
   CellKind kind;
@@ -114,7 +115,8 @@ struct ElementType {
     return is_hexahedron() ? abaqus_pyramid_order.size() : shape_of(kind).nodes(order);
   }
 };
-/// The longest matching prefix determines the type: c3d10m is a c3d10, c3d20 is not a c3d2.
+/// The longest matching prefix determines the type; no digit may follow it: c3d10m is a c3d10, but c3d40 is
+/// no c3d4.
 constexpr ElementType element_types[] = {
     {"c3d4", CellKind::tet, 1},          {"c3d10", CellKind::tet, 2},
     {"dc3d4", CellKind::tet, 1},         {"dc3d10", CellKind::tet, 2},
@@ -152,8 +154,8 @@ const ElementType* find_type(std::string_view name) {
   return best;
 }
 
-/// An element set. `name` is in lower case, `written` as in the file. `named_apart`: an *ELSET defines it,
-/// not only the *ELEMENT that lists its elements.
+/// An element set. `name` is in lower case, `written` as in the file. `named_apart`: an *ELSET line names it,
+/// not only *ELEMENT lines.
 struct Set {
   std::string name, written;
   std::vector<std::int64_t> members;
@@ -310,7 +312,7 @@ class AbaqusReader {
     }
     CellNodes nodes;
     for (const Index node : listed) nodes.add(node);
-    // The mid-edge node is the second of three.
+    // In the file the mid-edge node is the second of three.
     return type.kind == CellKind::edge ? nodes.in_order(std::array<std::uint8_t, 3>{0, 2, 1}) : nodes;
   }
 
@@ -334,9 +336,9 @@ class AbaqusReader {
     const auto before = static_cast<Index>(mesh_.layers.pyramids.size());
     const auto numbers = join_pyramids(pairs, mesh_);
     if (!numbers)
-      lines_.fail(
-          fmt::format("the elements of the set {} are not pairs of halves of pyramids; export the mesh again",
-                      abaqus_halves));
+      lines_.fail(fmt::format(
+          "the set {} must list pairs of tetrahedra that are halves of a pyramid; export the mesh again",
+          abaqus_halves));
     for (CellPlace& place : places_)
       if (place.kind == CellKind::tet) place.index = (*numbers)[place.index];
     for (Index k = 0; k < pairs.size(); ++k)
@@ -374,8 +376,8 @@ class AbaqusReader {
     const std::int64_t steps = (last - first) / step;
     if (static_cast<std::size_t>(steps) > places_.size())
       lines_.fail(fmt::format(
-          "the range from {} to {} in steps of {} has more members than there are elements before it, {}",
-          first, last, step, places_.size()));
+          "the range from {} to {} in steps of {} has more members than the {} elements before it", first,
+          last, step, places_.size()));
     require_room(static_cast<std::size_t>(steps) + 1);
     for (std::int64_t k = 0; k <= steps; ++k) members.push_back(first + k * step);
   }
@@ -392,7 +394,7 @@ class AbaqusReader {
     members.insert(members.end(), copy.begin(), copy.end());
   }
 
-  /// Returns the members of an earlier set. `written`: its name for the message if there is none.
+  /// Returns the members of an earlier set. `written`: the name for the message if there is no such set.
   const std::vector<std::int64_t>& members_of(const std::string& name, std::string_view written) const {
     const auto found = set_index_.find(name);
     if (found == set_index_.end())
@@ -400,8 +402,8 @@ class AbaqusReader {
     return sets_[found->second].members;
   }
 
-  /// Limits the total number of members of sets: with ranges, and sets that contain sets, a small file could
-  /// define any number.
+  /// Limits the total number of members that ranges and names of other sets add: otherwise a small file could
+  /// define sets of any size.
   void require_room(std::size_t members) {
     constexpr std::size_t most_repeats = 64;
     repeated_members_ += members;
@@ -445,7 +447,7 @@ class AbaqusReader {
     }
   }
 
-  /// Rejects a part that is moved when it is placed, which is not supported.
+  /// Rejects an *INSTANCE that moves or turns its part, which is not supported.
   void read_instance() {
     each_line([&](const Fields& fields) {
       for (const std::string_view field : fields)
@@ -454,8 +456,9 @@ class AbaqusReader {
     });
   }
 
-  /// Sets the tags of cells by sets. If a cell is in several, the first with a name of ours decides; without
-  /// such a set, the first *ELSET other than the set of everything; without that, the set of its *ELEMENT.
+  /// Sets the tags of cells by their sets. The first set with a name of ours decides; without such a set, the
+  /// first *ELSET; then the set of the cell's *ELEMENT; last, the set of everything. The set of halves of
+  /// pyramids gives no tags.
   void tag_cells() {
     Tagged tagged;
     for (const CellKind kind : all_cell_kinds) {
@@ -498,7 +501,8 @@ class AbaqusReader {
     return tag;
   }
 
-  /// Reads the regions of cells from the element sets VOLUME_1 and so on in our own files.
+  /// Takes the regions of cells from the element sets VOLUME_1 and so on, which our own files have. Sets none
+  /// if a cell is in none of these sets.
   void read_volumes() {
     PerKind<std::vector<Index>> regions;
     for (const CellKind kind : all_cell_kinds)
@@ -526,8 +530,8 @@ class AbaqusReader {
     }
   }
 
-  /// Returns our cell's side for S1 and so on; nothing for a face without area, and for the second half's
-  /// part of a pyramid's base.
+  /// Returns the side of our cell for the face `number` (1: S1); nothing for a face without area, for the
+  /// face between the halves of a pyramid, and for the second half's part of the base.
   static std::optional<std::size_t> side_of(const CellPlace& place, unsigned number) {
     if (place.half) return side_of_pyramid(*place.half, number);
     const auto numbers = abaqus_faces(place.kind);

@@ -2,10 +2,11 @@
 // as C3D8 whose last four nodes are one (for second order see abaqus_pyramids.h); an element set for each
 // region of the complex (VOLUME_1) and for each tag of regions (REGION_7); a surface for each tag of patches
 // (PATCH_7: faces of the elements behind it); a node set for each tag of patches and curves (PATCH_7_NODES,
-// CURVE_7_NODES). Conditions for periodic faces are in a separate file beside it. EALL and NALL contain
-// everything. Triangles without tets are S3 or S6, or in the plane z = 0 CPS3, CPE6 and so on, with an
-// element set for each tag of patches (PATCH_7); curve edges without triangles are B31 or B32, one set for
-// each tag of curves (CURVE_7). Numbers take 20 characters at most, as both programs require.
+// CURVE_7_NODES). Conditions for periodic faces are in a second file beside the mesh. EALL contains all
+// elements, NALL all nodes. In a mesh without tets, triangles are S3 or S6, or in the plane z = 0 CPS3, CPE6
+// and so on, with an element set for each tag of patches (PATCH_7); curve edges without triangles are B31 or
+// B32, one set for each tag of curves (CURVE_7). Numbers take 20 characters at most, as both programs
+// require.
 #include <fmt/format.h>
 
 #include <array>
@@ -48,7 +49,8 @@ void write_numbers(FileWriter& out, const std::vector<Index>& numbers) {
     out << numbers[i] << (i + 1 == numbers.size() || (i + 1) % numbers_a_line == 0 ? ",\n" : ", ");
 }
 
-/// Returns names of sets that differ from each other and from those in `known`, and adds them there.
+/// Returns a name for the set of each tag. The names differ from each other and from those in `known`, to
+/// which they are added.
 NamesByTag set_names_of(const TetMesh& mesh, std::size_t dimension, const std::vector<Tag>& tags,
                         DistinctNames& known) {
   NamesByTag names;
@@ -63,7 +65,8 @@ bool is_volume(std::string_view name) {
   return name.starts_with(prefix) && parse(name.substr(prefix.size()), region);
 }
 
-/// Returns names of regions that differ from each other and from the names of our own element sets.
+/// Returns a name for each tag of regions. The names differ from each other and from those of our other
+/// element sets.
 NamesByTag names_of_regions(const TetMesh& mesh) {
   DistinctNames known(std::string::npos);
   known.add(capital_word(abaqus_everything));
@@ -96,7 +99,7 @@ const char* element_type_of(CellKind kind, int order) {
   return "C3D8";
 }
 
-/// Writes the elements of one kind.
+/// Writes the cells of one kind in one region.
 void write_elements_of(FileWriter& out, const TetMesh& mesh, const HalvedPyramids& halved, CellKind kind,
                        Index region, const std::vector<Index>& cells) {
   if (cells.empty()) return;
@@ -158,8 +161,8 @@ void write_elements(FileWriter& out, const TetMesh& mesh, const HalvedPyramids& 
   }
 }
 
-/// Writes the elements of a mesh without tets, in an element set for each tag. `nodes_of` returns the nodes
-/// of the i-th element, in order.
+/// Writes the elements of a mesh without tets, in an element set for each tag. `nodes_of(i)` returns the
+/// nodes of the i-th element in Abaqus' order.
 template <class NodesOf>
 void write_elements_by_tag(FileWriter& out, const std::vector<Tag>& tags, const std::string& type,
                            const NamesByTag& names, const NodesOf& nodes_of) {
@@ -178,7 +181,7 @@ void write_elements_by_tag(FileWriter& out, const std::vector<Tag>& tags, const 
   for (const auto& each : members) out << names.at(each.first) << ",\n";
 }
 
-/// Rejects points off the plane: solvers take plane elements only in the plane z = 0.
+/// Rejects a mesh with points off the plane z = 0: solvers accept plane elements only there.
 void require_plane(const std::string& path, const TetMesh& mesh) {
   constexpr double flat = 1e-9;
   Box box;
@@ -191,7 +194,7 @@ void require_plane(const std::string& path, const TetMesh& mesh) {
           path, p.x, p.y, p.z));
 }
 
-/// Returns the nodes of a plane triangle, anticlockwise as seen from above.
+/// Returns the nodes of a triangle in the plane z = 0, counterclockwise as seen from above.
 CellNodes nodes_of_plane_face(const TetMesh& mesh, std::size_t face) {
   constexpr std::array<std::uint8_t, 3> turned{0, 2, 1};
   constexpr std::array<std::uint8_t, 6> turned_curved{0, 2, 1, 5, 4, 3};
@@ -201,7 +204,7 @@ CellNodes nodes_of_plane_face(const TetMesh& mesh, std::size_t face) {
   return nodes.size() == turned.size() ? nodes.in_order(turned) : nodes.in_order(turned_curved);
 }
 
-/// Writes triangles as elements of shells, or of a plane.
+/// Writes triangles as shell elements or plane elements.
 void write_triangles(FileWriter& out, const TetMesh& mesh, const NamesByTag& names) {
   const std::size_t nodes = mesh.order() == 2 ? 6 : 3;
   if (mesh.triangle_elements == TriangleElements::shell) {
@@ -214,7 +217,7 @@ void write_triangles(FileWriter& out, const TetMesh& mesh, const NamesByTag& nam
                         [&](Index face) { return nodes_of_plane_face(mesh, face); });
 }
 
-/// Writes edges as beams; the middle node is the second one.
+/// Writes edges as beams; in the file the mid-edge node is the second of three.
 void write_beams(FileWriter& out, const TetMesh& mesh, const NamesByTag& names) {
   constexpr std::array<std::uint8_t, 3> order{0, 2, 1};
   write_elements_by_tag(out, mesh.edge_tag, mesh.order() == 2 ? "B32" : "B31", names,

@@ -24,7 +24,7 @@ namespace {
 constexpr std::size_t nodes_on_line = 8, numbers_on_line = 8;
 constexpr std::size_t longest_component = 32;
 
-/// Formats a number as one field of 6e21.13e3: the exponent has three digits.
+/// Formats a number as one field of Fortran's format 6e21.13e3: the exponent has three digits.
 std::string real_field(double value) {
   std::string text = fmt::format("{:.13E}", value);
   const std::size_t sign = text.find('E') + 1;
@@ -42,11 +42,11 @@ void write_nblock(FileWriter& out, const TetMesh& mesh) {
   out << "N,R5.3,LOC,       -1,\n";
 }
 
-/// Ansys' elements for a kind of cells. Prisms and pyramids are hexahedra with coinciding nodes.
+/// Ansys' type of elements for a kind of cells. Prisms and pyramids are hexahedra with coinciding nodes.
 struct AnsysType {
   CellKind kind;
   int number;                           ///< number of the type, as ET sets it
-  std::array<std::size_t, 2> nodes;     ///< by order
+  std::array<std::size_t, 2> nodes;     ///< number of nodes, by order
   std::array<std::uint8_t, 20> places;  ///< our node at each place
 };
 constexpr std::array<AnsysType, 3> ansys_types{
@@ -76,7 +76,7 @@ void write_elements(FileWriter& out, const TetMesh& mesh) {
   out << "       -1\n";
 }
 
-/// Returns a name that no component has yet, without hyphens.
+/// Returns a name without hyphens that no component has yet, and adds it to `known`.
 std::string new_name(const TetMesh& mesh, std::size_t dimension, Tag tag, DistinctNames& known) {
   std::string name = capital_name(mesh, dimension, tag);
   std::replace(name.begin(), name.end(), '-', '_');

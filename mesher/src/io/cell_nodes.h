@@ -32,7 +32,7 @@ auto as_span(Nodes& nodes) {
 }
 
 /// The nodes of a cell of either order: its corners, then its mid-edge nodes in the order of TetMesh and
-/// LayerCells (of a tet ab, bc, ca, ad, bd, cd). VTK, Abaqus and Medit have the same order for tets.
+/// LayerCells (tets: ab, bc, ca, ad, bd, cd). VTK, Abaqus and Medit have the same order for tets.
 class CellNodes {
  public:
   template <class Cell, class Middle>
@@ -62,7 +62,7 @@ class CellNodes {
     return result;
   }
   /// Returns the cell whose node order[k] is listed[k]. The order may name a node several times, as for a
-  /// pyramid that a format stores as a hexahedron; returns nothing if these entries of `listed` differ.
+  /// pyramid that a format stores as a hexahedron; returns nothing if a node's entries in `listed` differ.
   static std::optional<CellNodes> gathered(std::span<const Index> listed,
                                            std::span<const std::uint8_t> order) {
     CellNodes result;
@@ -169,15 +169,15 @@ inline std::uint16_t layer_of(const TetMesh& mesh, CellKind kind, std::size_t i)
   return layers.empty() ? 0 : layers[i];
 }
 
-/// Our node at each place of a prism in formats that list the mid-edge nodes of the edges between the two
-/// triangles before those of the second triangle: CGNS, Exodus and Nastran.
+/// The order of a prism's nodes in CGNS, Exodus and Nastran, as our node at each place: the mid-edge nodes
+/// between the two triangles come before those of the second triangle.
 inline constexpr std::array<std::uint8_t, 15> prism_between_before_top{0, 1,  2,  3,  4, 5,  6, 7,
                                                                        8, 12, 13, 14, 9, 10, 11};
 inline CellNodes with_between_before_top(CellKind kind, const CellNodes& nodes) {
   return kind == CellKind::prism ? nodes.in_order(prism_between_before_top) : nodes;
 }
 
-/// Calls `call(kind)` for each kind of cells of this dimension of which the mesh has cells.
+/// Calls `call(kind)` for each kind of cells of this dimension that occurs in the mesh.
 template <class Call>
 void for_each_kind(const TetMesh& mesh, std::size_t dimension, const Call& call) {
   for (const CellKind kind : all_cell_kinds)
@@ -213,7 +213,7 @@ inline std::vector<Tag> all_tags(const TetMesh& mesh, std::size_t dimension) {
   return tags;
 }
 
-/// Replaces the nodes of a cell of either order.
+/// Replaces the nodes of the i-th cell of a kind, of either order.
 inline void set_cell(CellKind kind, std::size_t i, const CellNodes& nodes, TetMesh& mesh) {
   with_cells(mesh, kind, [&](auto& cells, auto& middle) {
     const auto corners = cells[i].size();
@@ -234,7 +234,8 @@ inline void add_cell(CellKind kind, const CellNodes& nodes, TetMesh& mesh) {
   });
 }
 
-/// Returns the nodes of a side of a cell, counterclockwise from outside, mid-edge nodes after the corners.
+/// Returns the nodes of a side of a cell: corners, then mid-edge nodes, both counterclockwise as seen from
+/// outside.
 inline CellNodes nodes_of_side(CellKind kind, const CellNodes& cell, std::size_t side) {
   const CellShape shape = shape_of(kind);
   const auto& [corners, places] = shape.sides[side];

@@ -8,7 +8,8 @@ namespace collarmesh::io {
 
 namespace {
 
-// Node k of a cell of the opposite orientation is node `table[k]` of the cell; the corners come first.
+// Entry k of a table is the node of a cell that becomes node k of the cell with the opposite orientation;
+// corners come first.
 constexpr std::array<std::uint8_t, 10> turned_tet{0, 1, 3, 2, 4, 8, 7, 6, 5, 9};
 constexpr std::array<std::uint8_t, 15> prism{0, 2, 1, 3, 5, 4, 8, 7, 6, 11, 10, 9, 12, 14, 13};
 constexpr std::array<std::uint8_t, 13> pyramid{0, 3, 2, 1, 4, 8, 7, 6, 5, 9, 12, 11, 10};

@@ -61,7 +61,7 @@ std::vector<std::vector<Index>> ghost_tets(const TetMesh& mesh) {
   const CellsAtVertices tets_at(mesh.tets, mesh.points.size());
   const std::vector<Index> numbers = partition_numbers(mesh);
   std::vector<std::vector<Index>> ghosts(numbers.size());
-  std::vector<Index> beside;  // the partitions around one tet
+  std::vector<Index> beside;  // the other partitions at the vertices of one tet
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
     beside.clear();
     for (const Index v : mesh.tets[t])

@@ -69,8 +69,8 @@ class MidNodes {
   std::unordered_map<std::uint64_t, Index> nodes_;
 };
 
-/// Rejects a mix of first and second order. All cells of volumes must have one order. All triangles must have
-/// this order, or all must have no mid-edge nodes; the same holds for quadrangles and for edges.
+/// Rejects a mix of first and second order. All cells with volume must have one order. All triangles must
+/// have this order, or all must have no mid-edge nodes; the same holds for quadrangles and for edges.
 void require_one_order(const std::string& path, const TetMesh& mesh) {
   for (const CellKind kind : all_cell_kinds) {
     const bool in_layers = kind == CellKind::prism || kind == CellKind::pyramid;
@@ -110,7 +110,8 @@ void number_regions(TetMesh& mesh) {
   for (const CellKind kind : surface_kinds) regions_beside(mesh, kind).clear();
 }
 
-/// Returns whether the numbers of regions are from 1 to 999 999 999, which every format can store.
+/// Returns whether each cell with volume has the number of its region, from 1 to 999 999 999: every format
+/// can store such numbers.
 bool has_region_numbers(const TetMesh& mesh) {
   constexpr Index largest = 999'999'999;
   return !mesh.tet_region.empty() &&
@@ -134,7 +135,8 @@ void find_face_regions(TetMesh& mesh, CellKind kind) {
     }
 }
 
-/// Fills in the numbers of layers. If no tet is in a layer, the tets' array stays empty.
+/// Fills in missing numbers of layers with 0. Empties the tets' array if it is incomplete or no tet is in a
+/// layer.
 void complete_layers(TetMesh& mesh) {
   LayerCells& layers = mesh.layers;
   layers.prism_layer.resize(layers.prisms.size(), 0);

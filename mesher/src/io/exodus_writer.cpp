@@ -45,7 +45,7 @@ struct Block {
   std::vector<Index> cells;
 };
 
-/// Returns whether the tag can be the value of a property.
+/// Returns whether the tag fits into a property, which has 32 bits.
 bool fits(Tag tag) {
   return tag >= std::numeric_limits<std::int32_t>::min() && tag <= std::numeric_limits<std::int32_t>::max();
 }
@@ -223,7 +223,7 @@ class ExodusFile {
   NetcdfWriter out_;
   std::vector<Block> blocks_;
   bool tags_fit_ = true;
-  PerKind<std::vector<std::int32_t>> number_in_file_;  // number of each cell, block by block
+  PerKind<std::vector<std::int32_t>> number_in_file_;  // numbers from 1, block by block
   std::map<Tag, std::vector<SideOfCell>> side_sets_;
   Groups node_sets_;
   std::map<Tag, std::size_t> side_numbers_, node_numbers_;

@@ -5,10 +5,10 @@
 
 namespace collarmesh::io {
 
-/// Returns the given format, or else the extension of the path, in lower case with its dot.
+/// Returns `format` or, if it is empty, the extension of the path; in lower case, with the dot.
 std::string format_of(const std::string& path, std::string_view format = {});
 
-/// Returns the entry for a file in a table of formats by extension; null if there is none.
+/// Returns the entry of `formats` whose extension is `format_of(path, format)`; null if there is none.
 template <class Formats>
 const typename Formats::value_type* find_format(const Formats& formats, const std::string& path,
                                                 std::string_view format) {

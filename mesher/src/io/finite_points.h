@@ -8,7 +8,8 @@
 
 namespace collarmesh::io {
 
-/// Returns the points of a list of coordinates. Calls `fail(message)`, which throws, if one is not finite.
+/// Returns the points with these coordinates (x, y, z of each in turn). Calls `fail(message)`, which must
+/// throw, if a coordinate is not finite.
 template <class Fail>
 std::vector<Point> finite_points(const std::vector<double>& coordinates, const Fail& fail) {
   std::vector<Point> points;

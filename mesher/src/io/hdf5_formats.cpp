@@ -1,5 +1,5 @@
 // Loads the readers and writers that use HDF5 from a module when one is needed: HDF5 and MED bring some forty
-// libraries, and loading these costs as much as a small mesh.
+// libraries, and loading these takes as long as meshing a small part.
 #include <fmt/format.h>
 
 #include "collarmesh/error.h"

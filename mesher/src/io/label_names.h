@@ -15,13 +15,13 @@
 /// Names of groups of cells as formats write and read them.
 namespace collarmesh::io {
 
-/// Return a text with `_` in place of all characters but ASCII letters, digits and `-`; the second function
-/// also turns letters into capitals.
+/// Return a text with `_` in place of each character that is no ASCII letter, digit or `-`; the second
+/// function also turns letters into capitals.
 std::string word(std::string text);
 std::string capital_word(std::string text);
 
-/// Return the group's name with letters, digits, `_` and `-` only; the second function in capitals and with a
-/// letter in front, as Abaqus and Ansys require.
+/// Return the group's name, changed like a text by `word` and `capital_word`. The second function also puts
+/// `N_` before a name that does not begin with a letter, as Abaqus and Ansys require.
 std::string word_name(const TetMesh& mesh, std::size_t dimension, Tag tag);
 std::string capital_name(const TetMesh& mesh, std::size_t dimension, Tag tag);
 
@@ -34,7 +34,8 @@ std::optional<Tag> tag_of_group_name(std::size_t dimension, std::string_view nam
 bool is_given_name(std::size_t dimension, std::string_view name);
 
 /// The tags of the groups in another program's file: groups with names of ours get the tags that these stand
-/// for; each other group gets the number after the largest tag so far, the first one 1.
+/// for; each other group gets the number after the largest tag so far in its dimension, or 1 if it is the
+/// first.
 class GroupTags {
  public:
   Tag find(std::size_t dimension, const std::string& name);

@@ -6,13 +6,13 @@
 
 namespace collarmesh::io {
 
-/// The first line of files that we write. In them the reference of a three-dimensional cell is its region's
-/// index.
+/// The first line of files that we write. In these files the reference of a three-dimensional cell is its
+/// region's index.
 constexpr std::string_view medit_signature = "# Written by collarmesh.\n";
 
-/// Returns the keyword of a kind of cells of first order. Tets, triangles and edges of second order add P2.
-/// The other kinds have none for second order: PrismsP2, PyramidsP2 and QuadrilateralsQ2 have nodes on their
-/// faces, too.
+/// Returns the keyword of a kind of cells of first order. For tets, triangles and edges of second order, P2
+/// follows. The other kinds have no keyword for our second order: PrismsP2, PyramidsP2 and QuadrilateralsQ2
+/// also have nodes on their faces.
 constexpr std::string_view medit_keyword(CellKind kind) {
   switch (kind) {
     case CellKind::tet: return "Tetrahedra";

@@ -1,5 +1,5 @@
 // Reads Medit's text format: vertices, tetrahedra, prisms, pyramids, triangles, quadrilaterals and edges with
-// their references; skips other keywords.
+// their references; rejects other cells and skips other keywords.
 #include <fmt/format.h>
 
 #include <string_view>

@@ -30,7 +30,7 @@ constexpr std::array mesh_formats{MeshFormat{".msh", read_msh_cells}, MeshFormat
 /// by faces.
 std::vector<PolygonSoup::RegionPoint> points_in_regions(const TetMesh& mesh) {
   if (mesh.tet_tag.size() != mesh.tets.size()) return {};
-  std::vector<std::pair<std::array<Index, 3>, Index>> sides;  // corners in order, and the tet
+  std::vector<std::pair<std::array<Index, 3>, Index>> sides;  // sorted corners, and the tet
   sides.reserve(4 * mesh.tets.size());
   for (Index t = 0; t < mesh.tets.size(); ++t)
     for (unsigned i = 0; i < 4; ++i) {
@@ -44,7 +44,7 @@ std::vector<PolygonSoup::RegionPoint> points_in_regions(const TetMesh& mesh) {
     const Index s = sides[i - 1].second, t = sides[i].second;
     if (sides[i - 1].first == sides[i].first && mesh.tet_tag[s] == mesh.tet_tag[t]) bodies.unite(s, t);
   }
-  std::map<Index, std::pair<double, Index>> largest;  // by body: six times the volume, and the tet
+  std::map<Index, std::pair<double, Index>> largest;  // by body: its largest tet, after six times its volume
   for (Index t = 0; t < mesh.tets.size(); ++t) {
     const auto& [a, b, c, d] = mesh.tets[t];
     const double volume =
@@ -76,7 +76,7 @@ PolygonSoup read_mesh_surface(const std::string& path, std::string_view format) 
     throw ReadError(fmt::format("{}: expected triangles of a surface, found none", path));
   PolygonSoup soup;
   soup.name = path;
-  std::vector<Index> number(mesh.points.size(), none);  // points only in tets are left out
+  std::vector<Index> number(mesh.points.size(), none);  // points of no face and no edge are left out
   const auto point = [&](Index p) {
     if (number[p] == none) {
       number[p] = static_cast<Index>(soup.points.size());

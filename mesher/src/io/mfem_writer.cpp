@@ -1,6 +1,7 @@
-// MFEM's mesh format v1.0 (mfem.org/mesh-format-v1.0): volumes with the number of their region as
-// attribute, faces with their tags, or numbered from 1 if not all tags are positive. Comments give the
-// name of each attribute. Curved elements are a function of second order on the vertices and edges.
+// MFEM's mesh format v1.0 (mfem.org/mesh-format-v1.0): volumes with the number of their region as attribute,
+// faces with their tags, or with numbers from 1 if a tag is not a positive number of 32 bits. Comments in the
+// file give the name of each attribute. The geometry of second order is a function with values at vertices
+// and mid-edge nodes.
 #include <fmt/format.h>
 
 #include <array>
@@ -43,7 +44,7 @@ struct Order {
         corner_number[v] = static_cast<Index>(corners.size());
         corners.push_back(v);
       }
-    // TetMesh's places of MFEM's edges ab, ac, ad, bc, bd, cd.
+    // The place in TetMesh of each of MFEM's edges ab, ac, ad, bc, bd, cd.
     constexpr std::array<std::size_t, 6> edges{0, 2, 3, 1, 4, 5};
     std::vector<bool> there(mesh.points.size(), false);
     for (const auto& middle : mesh.tet_mid_nodes)
@@ -105,7 +106,7 @@ void write_mfem(const std::string& path, const TetMesh& mesh) {
     for (Index i = 0; i < count_of(mesh, kind); ++i) volumes.push_back({kind, i, features_of(mesh, kind)[i]});
   });
   for_each_kind(mesh, 2, [&](CellKind kind) {
-    for (Index f = 0; f < count_of(mesh, kind); ++f)  // other faces bound nothing
+    for (Index f = 0; f < count_of(mesh, kind); ++f)  // a face beside no region bounds nothing
       if (regions_beside(mesh, kind)[f] != std::array<Index, 2>{0, 0})
         faces.push_back({kind, f, attributes.at(tags_of(mesh, kind)[f])});
   });

@@ -43,13 +43,13 @@ MshPhysicals number_groups(const TetMesh& mesh) {
   return numbers;
 }
 
-/// Returns the number of a feature's elementary entity, from 1; cells without a feature share one entity.
+/// Returns the number of a feature's elementary entity, from 1; cells without a feature are in entity 1.
 std::size_t entity(Index feature) {
   constexpr Index limit = std::numeric_limits<int>::max();
   return feature < limit ? std::size_t{feature} + 1 : 1;
 }
 
-/// Writes links of surfaces and curves; points are no entities here.
+/// Writes the periodic links of surfaces and curves; in this format points are no entities.
 void write_links(FileWriter& out, const TetMesh& mesh) {
   if (mesh.periodic.empty()) return;
   const MshEntities entities = find_entities(mesh);

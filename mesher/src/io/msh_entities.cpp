@@ -19,13 +19,14 @@ namespace collarmesh::io {
 
 namespace {
 
-/// The entities of one dimension, one for each pair of a feature and a tag. The entity has the number of the
-/// feature if that is known and free.
+/// The entities of one dimension, one for each pair of a feature and a tag. An entity has the number of its
+/// feature if the feature is known and no other entity has that number.
 class EntityTable {
  public:
   explicit EntityTable(std::vector<MshEntity>& entities) : entities_(entities) {}
 
-  /// Finds or adds an entity. `number` is the preferred one, 0 if the feature is unknown.
+  /// Finds or adds an entity. `number`: the number that the entity should get, that of its feature; 0 if the
+  /// feature is unknown.
   Index find(Index number, Tag tag) {
     const std::pair key(number, tag);
     if (key == last_key_ && last_ != none) return last_;
@@ -35,7 +36,7 @@ class EntityTable {
     return last_ = found->second;
   }
 
-  /// Returns the entity of a feature, whatever its tag.
+  /// Returns the entity with the number of a feature, whatever its tag. Adds one if there is none.
   Index find(Index number) {
     const auto found = by_number_.find(number);
     return found != by_number_.end() ? found->second : find(number, 0);
@@ -55,8 +56,8 @@ class EntityTable {
   }
 
  private:
-  /// Adds an entity. It gets no number yet if the preferred one is taken, or so large that few larger ones
-  /// are left.
+  /// Adds an entity. It gets its number later (`number_the_rest`) if `number` is 0, taken, or so large that
+  /// few larger ones are left.
   void add(Index number, Tag tag) {
     constexpr Index limit = std::numeric_limits<int>::max() / 2;
     MshEntity entity;
@@ -121,8 +122,8 @@ void assign_cells(const TetMesh& mesh, CellKind kind, EntityTable& table, std::v
   });
 }
 
-/// Assigns the nodes of cells of a kind to the entity of the last cell that has them; only nodes from
-/// position `from` of each cell on.
+/// Assigns each node of the cells of a kind to the entity of the last cell that has it. Leaves out the first
+/// `from` nodes of each cell.
 void place_nodes(const TetMesh& mesh, CellKind kind, std::size_t from, MshEntities& result) {
   const auto dimension = static_cast<std::uint8_t>(shape_of(kind).dimension);
   for (std::size_t i = 0; i < count_of(mesh, kind); ++i) {
@@ -190,7 +191,7 @@ void find_boxes(const TetMesh& mesh, MshEntities& result) {
 }
 
 void find_boundaries(const TetMesh& mesh, MshEntities& result) {
-  std::vector<std::pair<Index, int>> pairs;  // region and signed surface
+  std::vector<std::pair<Index, int>> pairs;  // region and surface; negative: its normal points inwards
   const auto add = [&](Index region, int surface) {
     if (region != 0 && (pairs.empty() || pairs.back() != std::pair(region, surface)))
       pairs.emplace_back(region, surface);
@@ -239,8 +240,8 @@ void find_physicals(MshEntities& result) {
   }
 }
 
-/// A divider of entities into parts. It orders parts by entity and partition, and numbers them after the
-/// entities.
+/// A divider of entities into parts. It orders parts by entity and partition; their numbers follow those of
+/// the entities.
 class Divider {
  public:
   Divider(const TetMesh& mesh, const MshEntities& whole, MshParts& result)

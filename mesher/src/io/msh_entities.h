@@ -10,8 +10,8 @@
 
 namespace collarmesh::io {
 
-/// Gmsh's view of a mesh: every cell and node belongs to an entity (a point, curve, surface or
-/// volume with a number), and entities of one tag to a physical group.
+/// An entity of Gmsh: a point, curve, surface or volume with a number. Every cell and node of a mesh belongs
+/// to an entity, and the entities of one dimension with one tag form a physical group.
 struct MshEntity {
   int number = 0;  ///< positive, unique in its dimension
   Tag tag = 0;
@@ -39,15 +39,16 @@ struct MshEntities {
 
 MshEntities find_entities(const TetMesh& mesh);
 
-/// The divided entities of a partitioned mesh: one for each pair of an entity and a partition that has some
-/// of its cells or points. Points belong to the lowest partition around them.
+/// The entities of a partitioned mesh, divided into parts: one part for each pair of an entity and a
+/// partition that has some of the entity's cells or points. Points belong to the lowest partition around
+/// them.
 struct MshParts {
   struct Part {
     int parent = 0;  ///< number of the whole entity
     Index partition = 0;
   };
   MshEntities entities;                           ///< physicals is empty
-  std::array<std::vector<Part>, 4> of_dimension;  ///< for each entity of entities.of_dimension
+  std::array<std::vector<Part>, 4> of_dimension;  ///< by part, as in entities.of_dimension
   std::vector<Index> numbers;                     ///< numbers of the partitions that have tets, ascending
   std::size_t partitions = 0;                     ///< number of partitions, counting those without tets
 };

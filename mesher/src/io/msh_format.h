@@ -12,7 +12,7 @@ namespace collarmesh::io {
 
 constexpr int gmsh_point = 15;
 
-/// A type of elements of Gmsh, and our node at each place.
+/// An element type of Gmsh. `places`: our node at each place.
 struct GmshType {
   int number;
   CellKind kind;
@@ -43,10 +43,11 @@ constexpr const GmshType& gmsh_type(CellKind kind, int order) {
   return gmsh_types.front();
 }
 
-/// In $Comments: declares that patch i of the complex is surface i + 1 and so on, and region i is volume i.
+/// A line in $Comments: patch, curve and vertex i of the complex are surface, curve and point i + 1, and
+/// region i is volume i.
 constexpr std::string_view msh_numbers_are_features = "Entity numbers are those of the complex.";
 
-// Gmsh accepts only positive numbers of physical groups, so a tag that is not from 1 to 2^31 - 1 is
+// Gmsh accepts only positive numbers of physical groups. So a tag that is not from 1 to 2^31 - 2 is
 // identified by its group's name alone (label_names.h).
 
 }  // namespace collarmesh::io

@@ -52,7 +52,7 @@ class PairLinks {
   }
 
   void add(std::size_t dimension, Index entity, Index master, const CellNodes& nodes) {
-    if (entity == master) return;  // the entity lies on an axis
+    if (entity == master) return;  // it lies on the axis of rotation
     auto& listed = nodes_[{dimension, entity, master}];
     for (const Index node : nodes)
       if (image_of(node) != none) listed.emplace(node, image_of(node));
@@ -99,10 +99,11 @@ class PairLinks {
   const TetMesh::PeriodicFaces& pair_;
   std::unordered_map<Index, Index> image_of_;
   std::set<std::array<Index, 2>> sides_;  // sides of triangles of the first group
-  std::map<std::tuple<std::size_t, Index, Index>, std::map<Index, Index>> nodes_;  // by entity and master
+  // The nodes of links, each with its image; by dimension, entity and master of the link.
+  std::map<std::tuple<std::size_t, Index, Index>, std::map<Index, Index>> nodes_;
 };
 
-/// The masters of entities so far.
+/// The master of each entity that has one so far.
 class Masters {
  public:
   /// Adds a link, unless its entity has a master already or the masters would form a cycle. Returns whether

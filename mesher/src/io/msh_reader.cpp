@@ -1,6 +1,6 @@
-// Reads Gmsh's formats 4.1 and 2 (text and binary) and 4.0 (text): tetrahedra, prisms, pyramids,
-// triangles, quadrangles and lines of first and second order. Tags are physical groups, or entities where
-// there is none. Skips the ghost elements of partitioned files and the elements between partitions.
+// Reads Gmsh's formats 4.1 and 2 (text and binary) and 4.0 (text): tetrahedra, prisms, pyramids, triangles,
+// quadrangles and lines of first and second order. A cell's tag is its physical group or, without one, its
+// entity. Skips ghost elements and the elements that Gmsh adds between partitions.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -48,7 +48,7 @@ struct PartitionEntity {
   Index partition = none;
 };
 
-/// A surface whose mesh is the moved mesh of another one.
+/// A surface whose mesh is the moved mesh of another surface, its master.
 struct SurfaceLink {
   int entity = 0, master = 0;
   TetMesh::Motion motion;
@@ -59,7 +59,7 @@ struct Contents {
   std::vector<Node> nodes;                               ///< in the order of their numbers
   bool dense = false;                                    ///< the numbers are 1, 2, ...
   std::array<std::vector<Cell>, 4> cells;                ///< by dimension
-  std::array<std::map<int, Tag>, 4> physical_of_entity;  ///< the first physical group
+  std::array<std::map<int, Tag>, 4> physical_of_entity;  ///< its first physical group
   std::array<std::map<int, PartitionEntity>, 4> partition_entities;
   std::array<std::map<Tag, Tag>, 4> tag_of_physical;  ///< the tag of a group, if the group's name determines
                                                       ///< it
@@ -109,7 +109,7 @@ void sort_nodes(Values& values, Contents& contents) {
   contents.dense = !nodes.empty() && nodes.front().number == 1 && nodes.back().number == nodes.size();
 }
 
-/// Returns the position of the node with a number; none if there is none.
+/// Returns the position of the node with this number; `none` if no node has it.
 Index find_node(const Contents& contents, std::uint64_t number) {
   const std::vector<Node>& nodes = contents.nodes;
   if (contents.dense) return number - 1 < nodes.size() ? static_cast<Index>(number - 1) : none;
@@ -168,7 +168,8 @@ void read_physical_names(MshText values, Contents& contents) {
 }
 
 /// Reads the box, the physical groups and the boundary of an entity. Returns its first group, if there is
-/// one. `point_numbers`: how many numbers place a point, 3 coordinates or, in version 4.0, the 6 of a box.
+/// one. `point_numbers`: how many numbers give the place of a point: 3 coordinates or, in version 4.0, the 6
+/// of a box.
 template <class Values>
 std::optional<Tag> read_rest_of_entity(Values& values, std::size_t dimension, int point_numbers) {
   for (int k = 0; k < (dimension == 0 ? point_numbers : 6); ++k) values.real("the box of an entity");
@@ -227,7 +228,7 @@ struct EntityOfBlock {
   std::size_t dimension;
   int number;
 };
-/// Reads the entity of a block. In version 4.0 its number comes first.
+/// Reads the entity of a block. In version 4.0 its number comes before its dimension.
 template <class Values>
 EntityOfBlock read_entity_of_block(Values& values, bool is_version_40) {
   const int first = is_version_40 ? values.integer("the number of an entity") : 0;
@@ -235,7 +236,8 @@ EntityOfBlock read_entity_of_block(Values& values, bool is_version_40) {
   return {dimension, is_version_40 ? first : values.integer("the number of an entity")};
 }
 
-/// Reads nodes. In version 4.0 the place of each follows its number.
+/// Reads nodes. In version 4.0 each node's number is followed by its coordinates; in 4.1 all numbers of a
+/// block come before the coordinates.
 template <class Values>
 void read_nodes(Values values, bool is_version_40, Contents& contents) {
   const Index blocks = values.count("the number of blocks", 4);
@@ -271,7 +273,7 @@ void read_nodes(Values values, bool is_version_40, Contents& contents) {
   sort_nodes(values, contents);
 }
 
-/// Reads an element that is a point, which is skipped.
+/// Skips an element that is a point.
 template <class Values>
 void read_point(Values& values, const Contents& contents) {
   values.number("the number of an element");
@@ -289,8 +291,8 @@ void read_cells_of_block(Values& values, const GmshType* type, int entity, Tag t
   cell.kind = type->kind;
   cell.entity = entity;
   cell.tag = tag;
-  bool between_partitions = false;  // Gmsh made the elements between partitions; they are not part of the
-                                    // mesh
+  bool between_partitions = false;  // whether Gmsh added the elements between partitions; they are not
+                                    // part of the mesh
   const auto& parts = contents.partition_entities[type->dimension()];
   if (const auto part = parts.find(entity); part != parts.end()) {
     cell.entity = part->second.parent;
@@ -326,7 +328,7 @@ void read_elements(Values values, bool is_version_40, Contents& contents) {
     values.fail(fmt::format("expected {} elements, found {}", total, found));
 }
 
-/// Reads links. Keeps those of surfaces that have a matrix.
+/// Reads links. Keeps the links of surfaces that have a matrix.
 template <class Values>
 void read_periodic(Values values, Contents& contents) {
   constexpr Index matrix = 16;
@@ -353,7 +355,7 @@ void read_periodic(Values values, Contents& contents) {
   }
 }
 
-// Version 2: counts are text in binary files, too.
+// Version 2. Its counts are text even in binary files.
 
 template <class Values>
 void read_nodes_2(Values values, Contents& contents) {
@@ -484,7 +486,7 @@ MshFormat read_format(const std::string& path, const MshSection& section) {
   return format;
 }
 
-/// Calls `read` with the values of a section as text or bytes.
+/// Calls `read` with a reader of the values of a section, text or binary as the format says.
 template <class Binary, class Read>
 void with_values(const std::string& path, const MshSection& section, const MshFormat& format, Read read) {
   if (format.binary)
@@ -530,7 +532,7 @@ void add_cells(const std::vector<Cell>& cells, TetMesh& mesh) {
 
 Index feature_of(int entity) { return static_cast<Index>(entity) - 1; }
 
-/// Adds partitions if all cells of volumes are tets and have one.
+/// Adds partitions if all cells with volume are tets and each has a partition.
 void add_partitions(const std::vector<Cell>& volumes, TetMesh& mesh) {
   for (const Cell& cell : volumes) {
     if (cell.partition == none || cell.kind != CellKind::tet) {
@@ -550,7 +552,8 @@ void add_features(const Contents& contents, TetMesh& mesh) {
     mesh.features.push_back({node.dimension, node.dimension == 3 ? none : feature_of(node.entity)});
 }
 
-/// Adds to `data` one value for each cell of a kind, limited to [least, most]; 0 where the file gives none.
+/// Adds to `data` one value for each cell of a kind, limited to [least, most]; 0 for a cell without one. Adds
+/// nothing if the file has no data with this name.
 template <class T>
 void add_data(Contents& contents, std::string_view name, CellKind kind, double least, double most,
               std::vector<T>& data) {
@@ -571,7 +574,8 @@ void add_once(Tag tag, std::vector<Tag>& tags) {
   if (at == tags.end() || *at != tag) tags.insert(at, tag);
 }
 
-/// Joins links with the same motion. Call it only for our own files, in which each tag covers whole faces.
+/// Adds periodic faces: all links with one motion become one pair of groups of patches. Call it only for our
+/// own files, in which all patches with a linked surface's tag belong to the periodic faces.
 void add_periodic(const Contents& contents, TetMesh& mesh) {
   for (const SurfaceLink& link : contents.links) {
     const auto alike = [&](const TetMesh::PeriodicFaces& faces) {
@@ -590,7 +594,7 @@ void add_periodic(const Contents& contents, TetMesh& mesh) {
   for (TetMesh::PeriodicFaces& faces : mesh.periodic) sort_uniquely(faces.nodes);
 }
 
-/// Makes the mesh. Nodes and cells come in the order of their numbers.
+/// Returns the mesh. Its points and cells are in the order of their numbers in the file.
 TetMesh make_mesh(const std::string& path, Contents& contents) {
   TetMesh mesh;
   for (const Node& node : contents.nodes) mesh.points.push_back(node.point);

@@ -21,7 +21,7 @@ struct MshSection {
 /// Splits a file into sections. Cost: linear. Throws ReadError if a section has no end.
 std::vector<MshSection> split_msh(const std::string& path, std::string_view text);
 
-/// The values of a section of a text file.
+/// A reader of the values of a section of a text file.
 class MshText {
  public:
   MshText(const std::string& path, const MshSection& section)
@@ -39,7 +39,7 @@ class MshText {
     return static_cast<std::uint64_t>(value);
   }
   /// Reads a count of items that take at least this many numbers each; it is an error if the rest of the
-  /// section cannot hold so many.
+  /// section cannot hold so many items.
   Index count(std::string_view what, std::size_t numbers) { return scan_.count(what, 2 * numbers); }
   double real(std::string_view what) { return scan_.number(what); }
   Point point(std::string_view what) { return scan_.point(what); }
@@ -50,7 +50,7 @@ class MshText {
   TextScanner scan_;
 };
 
-/// The values that sections of binary files have in all versions.
+/// A reader of the values that have one binary form in all versions.
 class MshBytes {
  public:
   int integer(std::string_view what) { return bytes_.get<std::int32_t>(what); }
@@ -64,7 +64,7 @@ class MshBytes {
   ByteReader bytes_;
 };
 
-/// The values of a section of a binary file.
+/// A reader of the values of a section of a binary file.
 class MshBinary : public MshBytes {
  public:
   MshBinary(const std::string& path, const MshSection& section, std::endian order)
@@ -80,8 +80,8 @@ class MshBinary : public MshBytes {
   }
 };
 
-/// The values of a section of a binary file of version 2: a count as text on the first line, then integers of
-/// 32 bits and doubles.
+/// A reader of the values of a section of a binary file of version 2: a count as text on the first line, then
+/// integers of 32 bits and doubles.
 class MshBinary2 : public MshBytes {
  public:
   MshBinary2(const std::string& path, const MshSection& section, std::endian order);
@@ -91,7 +91,7 @@ class MshBinary2 : public MshBytes {
     if (value < 0) fail(fmt::format("{}, {}, is negative", what, value));
     return static_cast<std::uint64_t>(value);
   }
-  /// Reads the count at the beginning.
+  /// Returns the count on the first line. `numbers`: as in MshText.
   Index count(std::string_view what, std::size_t numbers);
 
  private:

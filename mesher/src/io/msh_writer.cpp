@@ -3,8 +3,8 @@
 // physical group. Cells are numbered in the order of their kinds, tets first; each $ElementData, such as
 // "collar", covers all of them in the order of the file, as meshio needs it. In a partitioned mesh the cells
 // and nodes of an entity are divided among its parts, one entity for each partition: otherwise Gmsh would
-// lose data when it writes such a mesh again. $Periodic has a link for each point, curve and surface on the
-// second sides of periodic faces.
+// lose data when it writes such a mesh again. $Periodic has a link for each point, curve and surface of the
+// second groups of periodic faces.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ namespace collarmesh::io {
 
 namespace {
 
-/// Writes an entity. `part` is the text after its number.
+/// Writes an entity. `part` is text to write after its number.
 void write_entity(FileWriter& out, const MshEntity& entity, std::size_t dimension,
                   const std::string& part = {}) {
   out << entity.number << ' ' << part << entity.box.min;
@@ -55,7 +55,7 @@ void write_entities(FileWriter& out, const MshEntities& entities) {
   out << "$EndEntities\n";
 }
 
-/// Writes the entities of partitions, which count from 1.
+/// Writes the parts of entities. In the file, partitions are numbered from 1.
 void write_partition_entities(FileWriter& out, const MshParts& parts,
                               const std::vector<int>& ghost_entities) {
   out << "$PartitionedEntities\n" << parts.partitions << '\n' << ghost_entities.size() << '\n';
@@ -72,7 +72,7 @@ void write_partition_entities(FileWriter& out, const MshParts& parts,
   out << "$EndPartitionedEntities\n";
 }
 
-/// Writes the ghost tets of partitions.
+/// Writes each tet that is a ghost, with the partitions in which it is one.
 void write_ghost_elements(FileWriter& out, const TetMesh& mesh, const MshParts& parts) {
   std::vector<std::pair<Index, Index>> ghosts;  // a tet and the partition in which it is a ghost
   const std::vector<std::vector<Index>> tets = ghost_tets(mesh);
@@ -93,16 +93,17 @@ void write_ghost_elements(FileWriter& out, const TetMesh& mesh, const MshParts& 
   out << "$EndGhostElements\n";
 }
 
-/// The members of each entity of one dimension, in the order of the mesh.
+/// The members (cells or points) of each entity of one dimension, in the order of the mesh.
 struct EntityMembers {
   std::vector<Index> starts, members;
 
-  /// Groups the members. `entity_of(i)` returns the entity of member i, for all i below `count`; none if the
-  /// member belongs to no group.
+  /// Groups the members. `entity_of(i)` returns the entity of cell or point i, for all i below `count`;
+  /// `none` if it belongs to no entity.
   template <class EntityOf>
   EntityMembers(std::size_t entity_count, std::size_t count, const EntityOf& entity_of)
       : starts(entity_count + 1) {
-    // Members are counted and placed in chunks, each of which has its own range in each group.
+    // Chunks of members are counted and placed in parallel: each has a range of its own in each entity's
+    // members.
     constexpr std::size_t least_chunk = 16384, most_chunks = 64;
     const std::size_t chunk = std::max((count + most_chunks - 1) / most_chunks, least_chunk + entity_count);
     std::vector<std::vector<Index>> next((count + chunk - 1) / chunk);
@@ -211,7 +212,7 @@ void write_elements(FileWriter& out, const TetMesh& mesh, const MshEntities& ent
   out << "$EndElements\n";
 }
 
-/// Writes data with a value for each cell, `value_of(kind, cell)`.
+/// Writes data whose value for each cell is `value_of(kind, cell)`.
 template <class ValueOf>
 void write_data(FileWriter& out, std::string_view name, const CellGroups& groups, const ValueOf& value_of) {
   out << "$ElementData\n1\n\"" << name << "\"\n1\n0\n3\n0\n1\n" << groups.count << '\n';
@@ -244,7 +245,7 @@ void write(const std::string& path, const TetMesh& mesh, bool with_ghosts) {
   const MshEntities entities = find_entities(mesh);
   std::optional<MshParts> parts;
   if (!mesh.tet_partition.empty()) parts = divide_entities(mesh, entities);
-  const MshEntities& holders = parts ? parts->entities : entities;  // entities of the cells
+  const MshEntities& holders = parts ? parts->entities : entities;  // the entities of cells
   const CellGroups groups(mesh, holders);
   out << "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Comments\nWritten by collarmesh.\n";
   if (entities.numbers_are_features) out << msh_numbers_are_features << '\n';

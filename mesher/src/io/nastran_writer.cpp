@@ -1,7 +1,7 @@
-// Nastran's bulk data (.bdf; MSC Nastran Quick Reference Guide): nodes in large fields, CTETRA, CPENTA
-// and CPYRAM of both orders, CTRIA3 or CTRIA6 and CQUAD4 or CQUAD8 of the faces. Each region and then each
-// tag of faces has a property number; comments give its name, as HyperMesh does. The user adds properties and
-// materials, and deletes faces that need none.
+// Nastran's bulk data (.bdf; MSC Nastran Quick Reference Guide): nodes in large fields, CTETRA, CPENTA and
+// CPYRAM of both orders, CTRIA3 or CTRIA6 and CQUAD4 or CQUAD8 for the faces. Each region has a property
+// number, and so has each tag of faces, with numbers after those of the regions; comments give their names,
+// as HyperMesh does. The user adds properties and materials, and deletes faces that need none.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::size_t large_field = 16, fields_on_line = 8;
 
-/// Formats a real number with a point and as many digits as fit.
+/// Formats a real number with a decimal point and as many digits as fit.
 std::string short_real(double value) {
   for (int digits = 17;; --digits) {
     std::string text = digits == 17 ? fmt::format("{}", value) : fmt::format("{:.{}g}", value, digits);

@@ -92,7 +92,7 @@ bool NetcdfWriter::grows(const Variable& variable) const {
   return !variable.dimensions.empty() && dimensions_[variable.dimensions.front()].unlimited;
 }
 
-/// Returns the size in bytes of all values of a variable or, if it grows, of one record.
+/// Returns the size in bytes, with padding, of all values of a variable or, if it grows, of one record.
 std::uint64_t NetcdfWriter::bytes_of(const Variable& variable) const {
   std::uint64_t bytes = size_of(variable.type);
   for (const std::size_t d : variable.dimensions)
@@ -112,7 +112,7 @@ std::string NetcdfWriter::header(std::uint64_t first_value) const {
   append_attributes(bytes, attributes_);
   append32(bytes, variable_list);
   append32(bytes, variables_.size());
-  std::uint64_t fixed = 0;  // records follow all fixed variables
+  std::uint64_t fixed = 0;  // bytes of the variables that do not grow; records follow them
   for (const Variable& variable : variables_) fixed += grows(variable) ? 0 : bytes_of(variable);
   std::uint64_t value = first_value, record = first_value + fixed;
   for (const Variable& variable : variables_) {

@@ -20,7 +20,7 @@ class NetcdfWriter {
 
   /// Adds a dimension and returns its number.
   std::size_t add_dimension(std::string_view name, std::size_t length);
-  /// Adds a dimension that other programs can extend; its length is 0.
+  /// Adds a dimension that other programs can extend, and returns its number; its length is 0.
   std::size_t add_unlimited_dimension(std::string_view name);
 
   struct Attribute {
@@ -37,14 +37,14 @@ class NetcdfWriter {
                  std::vector<Attribute> attributes = {});
   void add_real(std::string name, const std::vector<std::size_t>& dimensions);
 
-  /// Writes the description of everything added. Throws WriteError for a variable that is too large for the
-  /// format.
+  /// Writes the description of all dimensions, attributes and variables. Throws WriteError for a variable
+  /// that is too large for the format.
   void write_header();
   /// Write the values of the next variable that does not grow, one after the other. After the last one call
   /// `end_variable`.
   void write(std::int32_t value);
   void write(double value);
-  /// Writes a text padded with zeros to `length`.
+  /// Writes a text, cut off or padded with zeros to `length` bytes.
   void write(const std::string& text, std::size_t length);
   void end_variable();
   void commit() { out_.commit(); }

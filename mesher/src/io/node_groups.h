@@ -51,7 +51,8 @@ inline std::map<Index, Tag> tags_of_regions(const TetMesh& mesh) {
   return regions;
 }
 
-/// Numbers the tags from `first`, in their order: for formats whose numbers are positive.
+/// Returns a number for each tag, from `first` in ascending order of the tags: for formats whose numbers are
+/// positive.
 inline std::map<Tag, std::size_t> numbered_tags(const std::vector<Tag>& tags, std::size_t first = 1) {
   std::map<Tag, std::size_t> numbers;
   for (const Tag tag : tags) numbers.try_emplace(tag, 0);
@@ -60,7 +61,7 @@ inline std::map<Tag, std::size_t> numbered_tags(const std::vector<Tag>& tags, st
 }
 
 /// Returns a positive number for each tag: the tag itself if all tags are positive numbers of 32 bits,
-/// otherwise numbers from 1 in the order of the tags.
+/// otherwise numbers from 1 in ascending order of the tags.
 inline std::map<Tag, std::size_t> positive_numbers(const std::vector<Tag>& tags) {
   std::map<Tag, std::size_t> numbers = numbered_tags(tags);
   if (std::all_of(numbers.begin(), numbers.end(), [](const auto& each) {

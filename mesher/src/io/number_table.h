@@ -10,11 +10,11 @@
 
 namespace collarmesh::io {
 
-/// A map from a file's own numbers of entities to indices. Cost: constant if the numbers are consecutive,
-/// else logarithmic.
+/// A map from the numbers that a file gives to its nodes or elements to indices. Cost of `find`: constant if
+/// the numbers are consecutive, otherwise logarithmic.
 class NumberTable {
  public:
-  /// Adds a number. Call it in the order of the entities.
+  /// Adds the number of the next node or element.
   void add(std::int64_t number) { numbers_.emplace_back(number, static_cast<Index>(numbers_.size())); }
 
   /// Sorts the numbers; call it after the last `add`. Returns a number that was given twice, if there is one.
@@ -26,7 +26,7 @@ class NumberTable {
     return std::nullopt;
   }
 
-  /// Returns the index of a number; none if it does not occur.
+  /// Returns the index of a number; `none` if it does not occur. Precondition: the numbers are sorted.
   Index find(std::int64_t number) const {
     if (numbers_.empty() || number < numbers_.front().first || number > numbers_.back().first) return none;
     // The guess is exact for consecutive numbers.

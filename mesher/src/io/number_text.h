@@ -20,8 +20,8 @@ inline bool underflows(std::string_view word) {
                                             : word.substr(exponent + 1, 1) == "-";
 }
 
-/// Returns whether the whole word is a number. Also accepts "nan" and "inf"; a number that is too large
-/// becomes infinite.
+/// Reads a number. Returns false if the word is not a number as a whole. Accepts "nan" and "inf"; a number
+/// that is too large becomes infinite, one too close to 0 becomes 0.
 inline bool parse(std::string_view word, double& value) {
   word = without_plus(word);
   const char* end = word.data() + word.size();
@@ -33,7 +33,7 @@ inline bool parse(std::string_view word, double& value) {
   return error == std::errc() && stop == end;
 }
 
-/// Returns whether the whole word is an integer that fits.
+/// Reads an integer. Returns false if the word is not, as a whole, an integer that fits.
 template <class Integer>
 bool parse(std::string_view word, Integer& value) {
   word = without_plus(word);

@@ -19,7 +19,7 @@ namespace collarmesh::io {
 
 namespace {
 
-/// An element of an .obj file. Faces may come before their vertices, so indices are checked at the end;
+/// A face or line of an .obj file. Faces may come before their vertices, so indices are checked at the end;
 /// `line` is for errors.
 struct ObjElement {
   std::size_t first_corner, line;
@@ -45,8 +45,8 @@ class Names {
 struct Elements {
   std::vector<ObjElement> list;
   Names groups, materials;
-  std::size_t group = 0, material = 0;  ///< the current ones
-  std::vector<std::int64_t> corners;    ///< counted from 0; negative ones are already resolved
+  std::size_t group = 0, material = 0;  ///< of the next element
+  std::vector<std::int64_t> corners;    ///< indices from 0; the file's negative ones are resolved
 };
 
 /// Returns whether the statement ends here. Skips a backslash at the end of a line, which continues the
@@ -92,7 +92,7 @@ void require_in_range(const std::string& path, const ObjElement& element, std::i
 }
 
 /// Returns the tags of the faces: by groups if there are several groups or one has a name of ours, otherwise
-/// by materials.
+/// by materials if there are several. Adds the names of tags to `soup`.
 std::vector<Tag> tags_of_faces(const Elements& elements, PolygonSoup& soup) {
   std::set<std::size_t> groups, materials;
   for (const ObjElement& element : elements.list) {

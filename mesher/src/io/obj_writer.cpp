@@ -11,7 +11,7 @@ namespace collarmesh::io {
 
 namespace {
 
-/// Returns the name as a single word.
+/// Returns the name of a tag as a single word.
 std::string name_of(const PolygonSoup& soup, Tag tag) {
   const std::string* given = soup.tag_names.find(2, tag);
   if (given == nullptr) return group_name(GroupNames::complex, 2, tag);

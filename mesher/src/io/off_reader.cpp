@@ -1,5 +1,5 @@
 // Our own reader, because with CGAL 5.5.1's read_OFF a header that claims fewer faces than follow shortens
-// the file silently, and one that claims two thousand million allocates them.
+// the file silently, and for one that claims two thousand million it allocates memory for all of them.
 #include <fmt/format.h>
 
 #include <string_view>
@@ -16,7 +16,7 @@ namespace {
 bool is_number_start(char c) { return (c >= '0' && c <= '9') || c == '-' || c == '+'; }
 
 /// Reads the keyword [ST][C][N]OFF, which some writers leave out. Normals, colours and texture coordinates
-/// follow the position on its line and are not used.
+/// follow a vertex's coordinates on their line and are skipped.
 void read_keyword(TextScanner& scan) {
   if (!scan.at_end() && is_number_start(scan.peek().front())) return;
   const std::string_view keyword = scan.word("the keyword OFF");

@@ -1,4 +1,5 @@
-// The object file format of Geomview (.off). Segments are faces of two corners; tags have no place in it.
+// The object file format of Geomview (.off). Segments are faces of two corners; the format has no place for
+// tags.
 #include "io/file_writer.h"
 #include "io/one_polygon.h"
 #include "io/soup_formats.h"

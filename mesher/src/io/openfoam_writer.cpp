@@ -30,12 +30,12 @@ using Corners = std::array<Index, 4>;
 
 std::size_t count_corners(const Corners& corners) { return corners[3] == none ? 3 : 4; }
 
-/// A side of a cell, its owner; the corners are counterclockwise for a viewer outside the owner. The
+/// A side of a cell, which is its owner; the corners are counterclockwise as seen from outside the owner. The
 /// neighbour is the cell on the other side, or none.
 struct Side {
   Corners corners;
   Index owner = none, neighbour = none;
-  Index face = none;  ///< index among the triangles or quadrangles of the mesh
+  Index face = none;  ///< index among the mesh's triangles or quadrangles; none: it is not among them
 
   bool is_triangle() const { return corners[3] == none; }
   std::array<Index, 3> triangle() const { return {corners[0], corners[1], corners[2]}; }
@@ -45,7 +45,7 @@ struct Side {
 /// Returns the tag of a side that is a face of the mesh.
 Tag tag_of(const TetMesh& mesh, const Side& side) { return tags_of(mesh, side.kind())[side.face]; }
 
-/// Inner sides by owner and neighbour, then sides on the boundary by tag.
+/// The sides inside the mesh, sorted by owner and neighbour, and those on its boundary, sorted by tag.
 struct Sides {
   std::vector<Side> inside, outside;
 
@@ -183,7 +183,7 @@ bool is_flipped(const TetMesh& mesh, const Side& side) {
                             : !PolygonFinder<4>::alike(mesh.layers.quads[side.face], side.corners);
 }
 
-/// Writes zones of faces. A face is flipped if its zone's normal points to the owner.
+/// Writes zones of faces. A face is flipped if its normal in `mesh` points into the owner.
 void write_face_zones(FileWriter& out, const TetMesh& mesh, const Sides& sides) {
   Groups zones;
   for (std::size_t i = 0; i < sides.inside.size(); ++i)

@@ -1,5 +1,5 @@
-// Our own reader, because CGAL 5.5.1's read_PLY accepts corners out of range, and rounds the doubles of a
-// text file to 32 bits when its header says float.
+// Our own reader, because CGAL 5.5.1's read_PLY accepts corners out of range, and rounds the numbers of a
+// text file to 32 bits if its header says float.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// Stanford's polygon format (.ply), binary, little endian, in 64-bit numbers. Segments are edges; the tag
-// of a face is a property, if there is any.
+// Stanford's polygon format (.ply), binary, little endian, in 64-bit numbers. Segments are edges; tags of
+// faces are a property, if there are any and all fit into 32 bits.
 #include <bit>
 #include <string_view>
 
@@ -11,7 +11,8 @@ namespace collarmesh::io {
 
 namespace {
 
-/// Returns whether tags are written. The format has no integers of 64 bits.
+/// Returns whether tags are written: if one is not 0, and all fit into 32 bits, because the format has no
+/// integers of 64 bits.
 bool has_tags(const PolygonSoup& soup) {
   bool any = false;
   for (Index f = 0; f < soup.facet_count(); ++f) {

@@ -7,9 +7,8 @@
 
 namespace collarmesh::io {
 
-/// A merger that gives points of equal coordinates (0 and -0 are equal) one index. Appends new ones to
-/// `points`.
-/// Cost: constant per point, expected.
+/// A map from points to indices: points with equal coordinates (0 and -0 are equal) get one index. Appends
+/// new points to `points`. Cost: expected constant per point.
 class PointMerger {
  public:
   explicit PointMerger(std::vector<Point>& points) : points_(points), slots_(64, none) {}

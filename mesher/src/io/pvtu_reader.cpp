@@ -1,5 +1,5 @@
-// Reads VTK's XML format for unstructured grids in pieces, joined by the numbers of points and cells in the
-// whole mesh. Ghost cells are skipped, because another piece has them.
+// Reads VTK's XML format for unstructured grids in pieces, and joins the pieces by the numbers that their
+// points and cells have in the whole mesh. Ghost cells are skipped, because another piece has them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -54,7 +54,8 @@ void sort_by_number(std::vector<PieceMember>& members) {
   });
 }
 
-/// Joins the arrays that have one of these names and exist in all pieces.
+/// Joins the arrays that have one of these names and exist in all pieces. Leaves out numbers in the whole
+/// mesh and marks of ghosts.
 template <std::size_t count>
 void join_arrays(const std::vector<NamedPiece>& pieces, const std::vector<PieceMember>& members,
                  const std::array<std::string_view, count>& names, VtkPiece::Arrays VtkPiece::*arrays,
@@ -70,7 +71,7 @@ void join_arrays(const std::vector<NamedPiece>& pieces, const std::vector<PieceM
   }
 }
 
-/// Merges points of several pieces with the same number.
+/// Joins points in the order of their numbers. Points with one number become one point.
 void join_points(std::vector<NamedPiece>& pieces, VtkPiece& whole) {
   std::vector<PieceMember> members;
   for (std::size_t k = 0; k < pieces.size(); ++k) {
@@ -87,9 +88,10 @@ void join_points(std::vector<NamedPiece>& pieces, VtkPiece& whole) {
       kept.push_back(member);
       whole.points.push_back(p);
     } else if (p != whole.points.back()) {
-      throw ReadError(fmt::format("{}: point {} is at ({}, {}, {}), but in another piece at ({}, {}, {})",
-                                  pieces[member.piece].path, member.number, p.x, p.y, p.z,
-                                  whole.points.back().x, whole.points.back().y, whole.points.back().z));
+      throw ReadError(fmt::format(
+          "{}: point {} is at ({}, {}, {}), but in another piece at ({}, {}, {}); save all pieces again",
+          pieces[member.piece].path, member.number, p.x, p.y, p.z, whole.points.back().x,
+          whole.points.back().y, whole.points.back().z));
     }
     pieces[member.piece].point_of[member.index] = static_cast<std::int64_t>(whole.points.size()) - 1;
   }
@@ -109,8 +111,10 @@ void join_cells(const std::vector<NamedPiece>& pieces, VtkPiece& whole) {
   sort_by_number(members);
   for (std::size_t i = 1; i < members.size(); ++i)
     if (members[i].number == members[i - 1].number)
-      throw ReadError(fmt::format("{}: cell {} occurs twice, and neither copy is marked as a ghost",
-                                  pieces[members[i].piece].path, members[i].number));
+      throw ReadError(
+          fmt::format("{}: cell {} occurs twice, and neither copy is marked as a ghost; mark one in the "
+                      "array vtkGhostType",
+                      pieces[members[i].piece].path, members[i].number));
   for (const PieceMember& member : members) {
     const auto& [path, piece, point_of] = pieces[member.piece];
     const auto size = static_cast<std::int64_t>(piece.connectivity.size());

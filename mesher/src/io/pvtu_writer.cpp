@@ -1,6 +1,6 @@
 // VTK's XML format for unstructured grids in pieces: NAME.pvtu lists a .vtu file for each partition,
-// NAME_0.vtu and so on. Points and cells have their numbers in the whole mesh. Ghost cells, and points that
-// another piece owns, are marked as in VTK (vtkDataSetAttributes: DUPLICATECELL, DUPLICATEPOINT).
+// NAME_0.vtu and so on. Arrays give the numbers of points and cells in the whole mesh. Ghost cells, and
+// points that another piece owns, are marked as in VTK (vtkDataSetAttributes: DUPLICATECELL, DUPLICATEPOINT).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -73,7 +73,8 @@ class Cutter {
  public:
   explicit Cutter(const TetMesh& mesh) : mesh_(mesh), local_(mesh.points.size(), none) {}
 
-  /// Finds the points of these cells, ascending; the first piece also gets points without cells.
+  /// Finds the points of the piece's cells, ascending. `first`: this is the first piece, which also gets the
+  /// points without cells.
   void find_points(Members& members, bool first) const {
     std::vector<Index>& points = members.points;
     for (const CellKind kind : all_cell_kinds)
@@ -133,10 +134,10 @@ class Cutter {
   }
 
   const TetMesh& mesh_;
-  std::vector<Index> local_;  // indices of points in the current piece
+  std::vector<Index> local_;  // by point of the mesh: its index in the current piece
 };
 
-/// Returns the numbers of cells: tets, then faces, then edges.
+/// Returns the numbers of cells in the whole mesh, where tets come first, then faces, then edges.
 VtkArray cell_ids(const TetMesh& mesh, const Members& members) {
   std::vector<std::int64_t> ids;
   for (const CellKind kind : all_cell_kinds) {
@@ -186,8 +187,8 @@ void write_list(const std::string& path, const VtkGrid& like, const std::vector<
   out.commit();
 }
 
-/// Writes the pieces. `told`: whether the mesh itself has partitions, which are then also written as an
-/// array.
+/// Writes the pieces. `told`: whether the caller's mesh has partitions; they are then written as an array,
+/// too.
 void write_pieces(const std::string& path, const TetMesh& mesh, bool told, bool with_ghosts) {
   const std::vector<Index> numbers = partition_numbers(mesh), owners = partitions_of_points(mesh);
   std::vector<Members> members = members_by_partition(mesh, numbers, with_ghosts);

@@ -17,8 +17,9 @@ struct SideOfCell {
   std::size_t side = 0;  ///< place in the shape's sides
 };
 
-/// Calls `call(side, face, behind)` for each side of a cell with volume that is one of these triangles or
-/// quadrangles. `behind`: whether the cell is behind the face, so that the normal points away from the cell.
+/// Calls `call(side, face, behind)` for each side of a cell with volume that coincides with one of `faces`,
+/// triangles or quadrangles. `behind`: whether the cell is behind the face, so that the normal points away
+/// from the cell.
 template <std::size_t n, class Call>
 void for_each_side_among(const std::vector<std::array<Index, n>>& faces, const TetMesh& mesh,
                          const Call& call) {
@@ -41,7 +42,7 @@ void for_each_side_among(const std::vector<std::array<Index, n>>& faces, const T
   });
 }
 
-/// Calls `call` in the same way for all triangles or all quadrangles of a mesh.
+/// Calls `call` as `for_each_side_among` does, for all faces of a kind (triangles or quadrangles) of a mesh.
 template <class Call>
 void for_each_listed_side(const TetMesh& mesh, CellKind kind, const Call& call) {
   if (kind == CellKind::triangle)
@@ -50,7 +51,8 @@ void for_each_listed_side(const TetMesh& mesh, CellKind kind, const Call& call) 
     for_each_side_among(mesh.layers.quads, mesh, call);
 }
 
-/// Finds for each triangle or quadrangle a side of a cell there, preferably of the cell behind it.
+/// Returns for each triangle or quadrangle the side of a cell that coincides with it, of the cell behind it
+/// if there is one. Beside no cell, `cell` is `none`.
 inline std::vector<SideOfCell> sides_of_faces(const TetMesh& mesh, CellKind kind = CellKind::triangle) {
   std::vector<SideOfCell> found(count_of(mesh, kind));
   for_each_listed_side(mesh, kind, [&](const SideOfCell& side, Index face, bool behind) {

@@ -1,5 +1,5 @@
 // Our own reader, because CGAL 5.5.1's read_STL accepts an empty file, a file shorter than its header, NaN
-// and bytes after the last triangle, and then reads a bad text file as a binary one.
+// and bytes after the last triangle, and reads a bad text file as if it were binary.
 #include <fmt/format.h>
 
 #include <bit>
@@ -49,7 +49,7 @@ void expect(TextScanner& scan, std::string_view keyword) {
 
 struct Solids {
   std::vector<std::string> names;
-  std::vector<std::size_t> ends;  // by solid: the number of triangles at its end
+  std::vector<std::size_t> ends;  // by solid: number of triangles of it and of all solids before it
 };
 
 void read_text_facet(TextScanner& scan, PointMerger& merger, std::vector<std::array<Index, 3>>& triangles) {
@@ -85,7 +85,8 @@ void read_text_solid(TextScanner& scan, PointMerger& merger, std::vector<std::ar
   solids.ends.push_back(triangles.size());
 }
 
-/// Makes the solids of one file its patches, with their names; a single solid gives no tags.
+/// Adds the triangles. The names of the solids become tags, unless the file has a single solid; solids with
+/// one name have one tag.
 void add_solids(const std::vector<std::array<Index, 3>>& triangles, const Solids& solids, PolygonSoup& soup) {
   std::map<std::string, Tag> tags;
   const auto tag_of = [&](std::size_t solid) {

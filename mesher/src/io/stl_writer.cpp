@@ -1,5 +1,5 @@
-// Binary STL: triangles in 32-bit numbers. Points that differ in 64 bits may become one; segments and
-// tags have no place in it.
+// Binary STL: triangles in 32-bit numbers. Points that differ only beyond 32 bits become equal; the format
+// has no place for segments and tags.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -13,11 +13,11 @@ void write_vtu(const std::string& path, const TetMesh& mesh);
 void write_pvtu(const std::string& path, const TetMesh& mesh);
 void write_vtk(const std::string& path, const TetMesh& mesh);
 void write_msh(const std::string& path, const TetMesh& mesh);
-/// Writes a .pvtu file alone, for these .vtu files. `like` is the mesh of any of them; all have the same
-/// arrays.
+/// Writes only the .pvtu file that lists these .vtu files. `like` is the mesh of any of them; all must have
+/// the same arrays.
 void write_list_of_pieces(const std::string& path, const TetMesh& like,
                           const std::vector<std::string>& pieces);
-// Writers that add the ghost tets around each partition:
+// The next two also write the ghost tets around each partition:
 void write_pvtu_with_ghost_cells(const std::string& path, const TetMesh& mesh);
 void write_msh_with_ghost_cells(const std::string& path, const TetMesh& mesh);
 void write_msh2(const std::string& path, const TetMesh& mesh);
@@ -31,7 +31,7 @@ void write_exodus(const std::string& path, const TetMesh& mesh);
 void write_su2(const std::string& path, const TetMesh& mesh);
 void write_openfoam(const std::string& path, const TetMesh& mesh);
 void write_tetgen(const std::string& path, const TetMesh& mesh);
-// Parts that are not built without HDF5 or MED:
+// The readers and writers of these formats are built only with HDF5 or MED:
 void write_xdmf(const std::string& path, const TetMesh& mesh);
 void write_med(const std::string& path, const TetMesh& mesh);
 void write_cgns(const std::string& path, const TetMesh& mesh);
@@ -50,7 +50,7 @@ TetMesh read_abaqus(const std::string& path);
 TetMesh read_unv(const std::string& path);
 TetMesh read_tetgen(const std::string& path);
 
-// These read the cells of a file, with or without tetrahedra:
+// These also read files without tetrahedra:
 TetMesh read_vtu_cells(const std::string& path);
 TetMesh read_vtp_cells(const std::string& path);
 TetMesh read_msh_cells(const std::string& path);
@@ -59,7 +59,7 @@ TetMesh read_medit_cells(const std::string& path);
 PointField read_vtu_field(const std::string& path, const std::string& name);
 PointField read_msh_field(const std::string& path, const std::string& name);
 /// Returns the index of the field to read: the one with the name `wanted` or, if that is empty, the only one.
-/// Throws ReadError.
+/// Throws ReadError if there is no such field.
 std::size_t choose_field(const std::string& path, const std::vector<std::string>& names,
                          const std::string& wanted);
 

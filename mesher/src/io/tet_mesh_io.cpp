@@ -169,8 +169,9 @@ std::string missing_library(const std::string& path, std::string_view format) {
   const std::string extension = format_of(path, format);
   const bool med = extension == ".med", hdf5 = extension == ".xdmf" || extension == ".cgns";
   if ((!med && !hdf5) || is_tet_mesh_format(path, format)) return {};
-  return fmt::format("{} needs {}, without which this program was built; install {} and build it again",
-                     extension, med ? "MED" : "HDF5", med ? "libmedc-dev and libhdf5-dev" : "libhdf5-dev");
+  return fmt::format(
+      "{} needs {}, but this program was built without it; install {} and build the program again", extension,
+      med ? "MED" : "HDF5", med ? "libmedc-dev and libhdf5-dev" : "libhdf5-dev");
 }
 
 bool is_tet_mesh_format(const std::string& path, std::string_view format) {

@@ -76,7 +76,7 @@ void read_tets(const std::string& path, std::int64_t first, TetMesh& mesh) {
   if (mesh.tets.empty()) file.scan().fail("expected tetrahedra, found none");
 }
 
-/// Reads cells. Faces and edges have mid-edge nodes if tets have.
+/// Reads faces or edges, if their file exists. They have mid-edge nodes if the tets have.
 void read_cells(const std::string& path, std::int64_t first, CellKind kind,
                 std::span<const std::uint8_t> order, TetMesh& mesh) {
   if (!std::filesystem::exists(path)) return;

@@ -1,6 +1,6 @@
-// TetGen's mesh: NAME.ele and beside it NAME.node, NAME.face and NAME.edge, numbered from 1. The
-// attribute of a tet is the tag of its region, the markers of faces and edges are their tags, the marker
-// of a point the dimension of its feature + 1 (0: unknown).
+// TetGen's mesh: NAME.ele and beside it NAME.node, NAME.face and NAME.edge, numbered from 1. The attribute of
+// a tet is the tag of its region, the markers of faces and edges are their tags, the marker of a point is one
+// more than the dimension of its feature, or 0 if that is unknown.
 #include <filesystem>
 #include <span>
 #include <vector>
@@ -22,7 +22,8 @@ void write_mesh_nodes(FileWriter& out, const TetMesh& mesh) {
   });
 }
 
-/// Writes number, nodes and label of each cell.
+/// Writes number, nodes and tag of each cell. `order`: TetMesh's node at each place in second order; empty:
+/// TetMesh's own order.
 template <class NodesOf>
 void write_cells(FileWriter& out, const TetMesh& mesh, const std::vector<Tag>& tags,
                  std::span<const std::uint8_t> order, NodesOf nodes_of) {

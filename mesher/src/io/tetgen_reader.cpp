@@ -36,7 +36,8 @@ struct FileFacet {
   std::vector<Point> holes;
 };
 
-/// Adds a facet. One without a polygon of three corners spans no area: its edges are loose segments.
+/// Adds a facet. A facet without a polygon of three or more corners spans no area: its edges become loose
+/// segments.
 void add_facet(const FileFacet& facet, PolygonSoup& soup) {
   bool spans = false, has_point = false;
   for (const std::vector<Index>& polygon : facet.polygons) {

@@ -1,6 +1,6 @@
-// The file formats .poly and .smesh of TetGen 1.5 (its manual, section "File formats"), numbered from 1.
-// A loose segment is a facet of two corners; a size becomes the volume of the regular tetrahedron of that
-// edge length.
+// The file formats .poly and .smesh of TetGen 1.5 (its manual, section "File formats"), numbered from 1. A
+// loose segment is a facet of two corners. The target size of a region becomes its largest volume: that of
+// the regular tetrahedron with this edge length.
 #include <fmt/format.h>
 
 #include <numbers>

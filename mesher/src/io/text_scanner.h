@@ -46,10 +46,10 @@ class TextScanner {
   std::string_view word(std::string_view what);
   /// Returns the next word without taking it; empty at the end.
   std::string_view peek();
-  /// Takes the rest of this line without surrounding blanks; goes to the next line.
+  /// Takes the rest of this line, up to a comment, without surrounding blanks; goes to the next line.
   std::string_view rest_of_line();
 
-  /// Takes this many bytes, whatever they are; takes nothing if there are fewer.
+  /// Takes this many bytes, whatever they are, and counts no lines in them; takes nothing if there are fewer.
   std::string_view raw(std::size_t count) {
     if (count > left()) return {};
     at_ += count;
@@ -67,7 +67,7 @@ class TextScanner {
   /// Reads a count of items that take at least `least_bytes` bytes each; a count that the rest of the text
   /// cannot hold, or `Index` cannot number, is an error.
   Index count(std::string_view what, std::size_t least_bytes);
-  /// Reads an index in [first, first + size); returns it counted from 0.
+  /// Reads an index in [first, first + size); returns it minus `first`.
   Index index(std::string_view what, std::int64_t first, std::size_t size);
 
   [[noreturn]] void fail(const std::string& message) const;
@@ -75,7 +75,7 @@ class TextScanner {
   [[noreturn]] void fail(std::string_view expected, std::string_view found) const;
 
   std::size_t line() const { return line_; }
-  /// Return the number of bytes read, and left.
+  /// Return the number of bytes that were read, and of those that are left.
   std::size_t offset() const { return static_cast<std::size_t>(at_ - begin_); }
   std::size_t left() const { return static_cast<std::size_t>(end_ - at_); }
 

@@ -13,9 +13,10 @@ namespace collarmesh::io {
 constexpr int unv_nodes = 2411, unv_elements = 2412, unv_groups = 2467;
 constexpr int unv_group_element = 8;
 
-/// The types of elements with their order of nodes: around the first face, corners and mid-edge nodes in
-/// turn; then those of the edges that rise from it; then the opposite face or corner. The format has no
-/// pyramids: they are written as bricks whose upper nodes are all the apex.
+/// A type of elements and the order of its nodes: corners and mid-edge nodes in turn around the first face;
+/// then the mid-edge nodes of the edges that rise from it; then the opposite face, like the first, or the
+/// opposite corner. The format has no pyramids: they are written as bricks whose upper nodes are all the
+/// apex.
 struct UnvType {
   int number;
   CellKind kind;

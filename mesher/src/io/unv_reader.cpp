@@ -1,6 +1,7 @@
 // Reads the universal file format of I-DEAS (.unv): nodes (2411, 781), elements (2412, 780) and groups (2467
-// and its forerunners). Groups become tags: a group with a name of ours becomes the tag that the name stands
-// for, others are numbered in their order and keep their names. Without groups the materials become tags.
+// and seven related datasets). Groups become tags: a group with a name of ours becomes the tag that the name
+// stands for, others are numbered in their order and keep their names. Without groups the materials become
+// tags.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -191,7 +192,8 @@ class UnvReader {
     return names_.size() - 1;
   }
 
-  /// Sets tags: the first group that contains an element counts.
+  /// Sets the tag of each element: that of the first group that contains it or, in a file without groups, its
+  /// material. Materials also become regions if they can be region numbers.
   void tag_cells() {
     if (const auto twice = element_numbers_.sort())
       scan_.fail(fmt::format("two elements have the number {}", *twice));

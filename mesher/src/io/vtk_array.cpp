@@ -37,7 +37,7 @@ class Stored {
   /// Returns an upper bound of the number of bytes left.
   std::size_t left() const { return base64_ ? text_.size() / 4 * 3 : text_.size(); }
 
-  /// Takes bytes. In base64 a run of bytes ends with its own padding.
+  /// Takes bytes. In base64 they must be a run that was encoded by itself, with its own padding.
   std::string take(std::uint64_t count) {
     std::string bytes = peek(count);
     if (bytes.size() < count) fail(count, bytes.size());
@@ -143,7 +143,8 @@ std::vector<To> convert(std::string_view bytes, std::endian order) {
   return values;
 }
 
-/// Converts values. Real numbers that no integer can hold become -1, which is no valid index or count.
+/// Converts values. Real numbers that an integer of 64 bits cannot hold become -1, which is no valid index or
+/// count.
 template <class From>
 std::vector<std::int64_t> convert_to_integers(std::string_view bytes, std::endian order) {
   std::vector<std::int64_t> values;

@@ -19,7 +19,7 @@ enum class VtkCompression { none, zlib, lz4 };
 /// The way in which a file stores its arrays.
 struct VtkStorage {
   std::endian order = std::endian::little;
-  std::size_t header_bytes = 4;  ///< bytes of each number that describes blocks
+  std::size_t header_bytes = 4;  ///< bytes of each number in the header of an array
   VtkCompression compression = VtkCompression::none;
 };
 

@@ -140,8 +140,8 @@ class GridMaker {
     });
   }
 
-  /// Returns the region behind a face (`side` 0) or in front of it (1); for a cell of a volume, its own
-  /// region.
+  /// Returns the region behind a face (`side` 0) or in front of it (1); for a cell with volume, its own
+  /// region; for an edge, 0.
   Index region_beside(CellKind kind, std::size_t i, std::size_t side) const {
     const std::size_t dimension = shape_of(kind).dimension;
     if (dimension == 3) return features_of(mesh_, kind)[i];
@@ -366,7 +366,7 @@ std::vector<VtkArray> take_boundary(const TetMesh& mesh, VtkGrid& grid) {
                 [&](CellKind kind) { corners += count_of(mesh, kind) * shape_of(kind).nodes(mesh.order()); });
   const auto name_of = [](const VtkArray& array) { return std::string(vtk_boundary_prefix) + array.name; };
   std::vector<VtkArray> boundary;
-  // Cuts an array and returns the part behind the cut.
+  // Cuts an array before value `at` and returns the part from there on.
   const auto cut = [&](VtkArray& array, std::size_t at) {
     VtkArray rest{name_of(array), {}};
     std::visit(

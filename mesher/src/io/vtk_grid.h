@@ -49,25 +49,25 @@ struct VtkGrid {
 };
 VtkGrid make_vtk_grid(const TetMesh& mesh);
 
-/// Arrays of the pieces of a mesh: numbers of points and cells in the whole, and marks of ghosts.
+/// Arrays of the pieces of a mesh: numbers of points and cells in the whole mesh, and marks of ghosts.
 constexpr std::string_view vtk_point_ids = "GlobalPointIds", vtk_cell_ids = "GlobalCellIds",
                            vtk_ghosts = "vtkGhostType";
 
-/// Keeps only the cells of volumes and moves the other cells to data of the whole grid, so that views that
-/// cut or select cells show the volume alone. Each new array has the name of the cell array from which its
-/// values come, with `boundary_` before it; `boundary_of` has the numbers of points and cells, so that a
-/// reader can tell whether these were changed. Cell arrays that only concern faces and edges are removed. The
-/// names of groups are added, too.
+/// Removes faces and edges from a grid that also has cells with volume, and returns them as arrays for the
+/// FieldData of the file: so views that cut or select cells show the volume alone. Each returned array is
+/// named like the array of the grid from which its values come, with `boundary_` before it; `boundary_of` has
+/// the numbers of points and of cells with volume, so that a reader can tell whether these were changed. Cell
+/// arrays that only concern faces and edges are removed from the grid. The names of groups are returned, too.
 std::vector<VtkArray> take_boundary(const TetMesh& mesh, VtkGrid& grid);
 constexpr std::string_view vtk_boundary_prefix = "boundary_";
 /// The cell arrays for which `take_boundary` adds arrays of the boundary.
 constexpr std::array<std::string_view, 6> vtk_boundary_arrays{"tag",          "region",  "region_back",
                                                               "region_front", "feature", vtk_cell_ids};
 
-/// Data of the whole grid that has the names of groups, a byte for each character (names_text.h): VTK has
-/// arrays of strings, but not all readers do.
+/// The array in FieldData that has the names of groups, as the bytes of a text (names_text.h): VTK has arrays
+/// of strings, but not all readers support them.
 constexpr std::string_view vtk_names = "names";
-/// Returns the array of names, or nothing if there are no names.
+/// Returns the array of names alone, or no array if there are no names.
 std::vector<VtkArray> names_array(const TetMesh& mesh);
 /// Returns the text in an array of names.
 std::string names_of(const std::vector<std::int64_t>& bytes);
@@ -87,14 +87,15 @@ struct VtkPiece {
   std::string names;             ///< names of groups, as in names_text.h
 };
 
-/// Arrays with labels of a mesh: ours, and the names that meshio and Gmsh use.
+/// The arrays of labels that are read, under our names and those of meshio and Gmsh.
 constexpr std::array<std::string_view, 3> vtk_point_arrays{"feature_dimension", "feature", vtk_point_ids};
 constexpr std::array<std::string_view, 15> vtk_cell_arrays{
     "tag",         "gmsh:physical", "medit:ref", "CellEntityIds", "region",
     "region_back", "region_front",  "feature",   "collar",        "crease",
     "thin",        "layer",         "partition", vtk_cell_ids,    vtk_ghosts};
 
-/// Reads the pieces of a .vtu file, each with the faces and edges beside its cells. Throws ReadError.
+/// Reads the pieces of a .vtu file, each with the faces and edges that FieldData has (`take_boundary`).
+/// Throws ReadError.
 std::vector<VtkPiece> read_vtu_pieces(const std::string& path);
 
 /// A fault of a piece, to which the caller adds the file and the place.

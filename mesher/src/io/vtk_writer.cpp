@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::string_view type_name(std::uint8_t) { return "unsigned_char"; }
 constexpr std::string_view type_name(std::int32_t) { return "int"; }
-constexpr std::string_view type_name(std::int64_t) { return "long"; }  // the only name that meshio knows
+constexpr std::string_view type_name(std::int64_t) { return "long"; }  // meshio knows no other name for it
 constexpr std::string_view type_name(float) { return "float"; }
 constexpr std::string_view type_name(double) { return "double"; }
 

@@ -1,6 +1,6 @@
-// Reads VTK's XML format for unstructured grids: arrays as text, inline or appended, base64 or raw,
-// compressed with zlib or LZ4 or not, with 32- or 64-bit headers; tetrahedra, prisms, pyramids, triangles,
-// quadrangles and lines.
+// Reads VTK's XML format for unstructured grids: arrays as text or bytes; bytes inline or appended, base64 or
+// raw, uncompressed or compressed with zlib or LZ4, with headers of 32 or 64 bits; tetrahedra, prisms,
+// pyramids, triangles, quadrangles and lines.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ namespace collarmesh::io {
 
 namespace {
 
-/// A file split into its XML and the appended bytes, which need not be XML.
+/// A file split into its XML and the appended bytes, which need not be valid XML.
 class VtuFile {
  public:
   explicit VtuFile(const std::string& path, const char* type = "UnstructuredGrid")
@@ -41,7 +41,7 @@ class VtuFile {
     return node;
   }
 
-  /// Returns the values of an array. `count`: the number that it must have; by default it may have any
+  /// Returns the values of an array. `count`: the number of values that it must have; `any`: it may have any
   /// number.
   template <class T>
   std::vector<T> values(const pugi::xml_node& array, std::size_t count = any) const {
@@ -299,8 +299,8 @@ class PieceReader {
         arrays.emplace(name, file_.values<std::int64_t>(array, count));
   }
 
-  /// Appends the faces and edges that our files have beside the cells (`take_boundary`), unless the cells
-  /// were changed since.
+  /// Appends the faces and edges that our files have in FieldData (`take_boundary`), unless the number of
+  /// points or cells has changed since.
   void append_boundary(VtkPiece& piece) const {
     const pugi::xml_node data = piece_.parent().child("FieldData");
     const auto find = [&](std::string_view name) {
@@ -378,7 +378,7 @@ TetMesh read_vtp_cells(const std::string& path) {
   return mesh;
 }
 
-// Reads a field. Our own labels of points are no fields.
+// Reads a scalar field on points. Our own labels of points do not count as fields.
 PointField read_vtu_field(const std::string& path, const std::string& name) {
   const VtuFile file(path);
   const auto pieces = file.grid().children("Piece");

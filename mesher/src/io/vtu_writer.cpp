@@ -75,7 +75,7 @@ struct Section {
 struct Piece {
   DataArray* array;
   std::string_view bytes;
-  std::size_t first;  // its first character in the text
+  std::size_t first;  // place of its text in the array's
 };
 constexpr std::size_t piece_bytes = 3 << 15;  // a multiple of three
 
@@ -94,7 +94,7 @@ void join(std::span<const std::string> blocks, DataArray& array, std::string& jo
   array.blocks.resize(base64_size(size));
 }
 
-/// Makes the text of all arrays.
+/// Compresses and encodes all arrays.
 void encode(std::span<Section> sections) {
   std::vector<DataArray*> arrays;
   std::vector<std::size_t> first{0};  // first block of each array, and the end

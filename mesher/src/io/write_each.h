@@ -11,9 +11,9 @@
 
 namespace collarmesh::io {
 
-/// Calls `write(text, i)` to write item i to a TextBuffer, for all i below `count`. Several threads call it
-/// at once, each for consecutive items; in the file the items are in order. One thread passes formatted text
-/// to the system while the others format the next items.
+/// Calls `write(text, i)` to write item i to a TextBuffer, for all i below `count`. Several threads call
+/// `write` at once, each for consecutive items; in the file the items are in order. One thread passes
+/// formatted text to the system while the others format the next items.
 template <class Write>
 void write_each(FileWriter& out, std::size_t count, const Write& write) {
   constexpr std::size_t at_once = 1024, buffers_of_a_thread = 8;

@@ -17,7 +17,7 @@ struct Free {
 
 constexpr std::size_t levels = 13;
 
-/// Returns a compressor. Compressors are large, so each thread keeps one.
+/// Returns a compressor. Compressors are large, so each thread keeps one for each level that it uses.
 libdeflate_compressor* compressor(int level) {
   thread_local std::array<std::unique_ptr<libdeflate_compressor, Free>, levels> compressors;
   auto& made = compressors.at(static_cast<std::size_t>(level));

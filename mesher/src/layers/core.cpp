@@ -112,7 +112,8 @@ bool Core::push(Heights& heights, const std::vector<std::uint8_t>& levels) {
   return false;
 }
 
-/// Lowers heights until tets would keep a share of their bounds if their nodes moved without any improvement.
+/// Lowers heights until tets at the front would keep a share of their bounds, or their present margin if that
+/// is less, if their nodes moved without any improvement.
 void Core::fit_tets(Heights& heights, const std::vector<std::uint8_t>& levels) {
   constexpr std::array<double, strictest + 1> shares{0.4, 1.0};
   const std::vector<Index> near = vertices_near_front(rings_moved);
@@ -153,9 +154,9 @@ void Core::fit_tets(Heights& heights, const std::vector<std::uint8_t>& levels) {
   }
 }
 
-/// Returns a tet's margin: the sine of its smallest angle divided by that of its bound, or the same for its
-/// largest angle if that is less. It is at least 1 if the tet keeps both bounds, -1 if it is flat or
-/// inverted.
+/// Returns a tet's margin: the sine of its smallest angle divided by the sine of the bound on it, or the same
+/// ratio for its largest angle, whichever is less. It is at least 1 if the tet keeps both bounds, and -1 if
+/// the tet is flat or inverted.
 double Core::margin(const remeshing::Corners& p, Index tet) const {
   const auto [of_smallest, of_largest] =
       thin_->squared_margins(remeshing::extreme_cosines(p), p, piece_->complex[tet].corners);
@@ -186,7 +187,8 @@ bool Core::is_reached(Index node, const Heights& heights) const {
          std::fabs(reached_[node] - heights[node]) <= precision * heights.asked(node);
 }
 
-/// Moves all vertices as far as tets stay good enough. Returns whether the front has reached its heights.
+/// Moves the front and the vertices near it as far as tets stay good enough. Returns whether the front has
+/// reached its heights.
 bool Core::advance(const Heights& heights) {
   const std::vector<Index> near = vertices_near_front(rings_moved);
   find_around(near);
@@ -333,7 +335,7 @@ std::vector<double> Core::shares_of(const std::vector<Vector>& moves, const std:
   }
 }
 
-/// Improves tets with smaller angles than this: first replaces them only by tets within their bounds, then
+/// Improves tets with angles below `angle`: first replaces them only by tets within their bounds, then
 /// replaces poor tets by any better ones. (A better tet may still miss its bound, because bounds are lower at
 /// creases and forced edges than beside them.) `thoroughly`: also by slow means.
 void Core::improve_tets(double angle, bool thoroughly) {
@@ -359,8 +361,8 @@ void Core::improve_by(double angle, bool thoroughly, double ratio) {
   cancelled_ = cancelled_ || improve(*piece_, options, execution_, thoroughly).cancelled;
 }
 
-/// Returns the tets beyond the bounds on angles. Leaves out unchanged tets that were beyond them from the
-/// start, because the mesh was certified with these.
+/// Returns the tets beyond the bounds on angles, without unchanged tets that were beyond them from the start,
+/// because the mesh was certified with these.
 std::vector<Index> Core::poor_tets() const {
   const auto& complex = piece_->complex;
   std::vector<std::uint8_t> poor(complex.size(), 0);
@@ -413,8 +415,8 @@ std::vector<Index> Core::nodes_near(const std::vector<Index>& tets, unsigned rin
   return nodes;
 }
 
-/// Lowers the front at these tets or, if it has no nodes there, in the nearest ring around them where it has
-/// some.
+/// Lowers the front, by the factor `share`, at these tets or, if no layers are there, in the nearest of a few
+/// rings around them where there are some. Returns whether it lowered any height.
 bool Core::lower_at(const std::vector<Index>& tets, double share, Heights& heights) const {
   for (unsigned rings = 0; rings < 4; ++rings) {
     bool any = false;

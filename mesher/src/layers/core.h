@@ -22,8 +22,8 @@ class Core {
        const ImproveOptions& improvement, const Execution& execution);
 
   /// Moves the copies to these heights, as far as tets stay positive, and improves the tets; where that does
-  /// not suffice, lowers the heights. Returns false if that fails, too; `failed()` then returns the nodes at
-  /// which it failed.
+  /// not suffice, lowers the heights. Returns false if tets stay poor or heights are still not reached;
+  /// `failed()` then returns the nodes of the front there. Returns true if cancelled, too.
   /// `levels`: by node of the front, how strictly the tets there limit its height at first.
   bool push(Heights& heights, const std::vector<std::uint8_t>& levels);
   /// From this level on, heights are limited so that tets keep their bounds even without improvement.
@@ -68,10 +68,10 @@ class Core {
   TetMesh mesh_;
   std::vector<Index> vertex_of_;  // by node of the front
   std::vector<Index> node_of_;    // by vertex of the initial core: its node of the front, or none
-  std::vector<double> reached_;   // by node of the front: its current distance
+  std::vector<double> reached_;   // by node of the front: the current distance of its copy
   std::unique_ptr<remeshing::EditableMesh> piece_;
   std::unique_ptr<remeshing::ThinShape> thin_;
-  std::vector<std::array<Index, 4>> poor_at_first_;  // sorted corners
+  std::vector<std::array<Index, 4>> poor_at_first_;  // tets that were poor from the start: sorted corners
   Lists around_;  // by vertex near the front: its neighbours; empty for fixed vertices
   std::vector<Index> failed_;
   bool cancelled_ = false;

@@ -35,7 +35,7 @@ void CoreMesh::copy_nodes() {
       if (const Index n = front_.node_of(t, corner); n != none) mesh.tets[t][corner] = vertex_of[n];
 }
 
-/// Puts the copies at the corners of faces without layers.
+/// Replaces moving nodes by their copies in faces without layers.
 void CoreMesh::copy_corners_of_other_faces() {
   for (Index t = 0; t < mesh.tets.size(); ++t)
     for (unsigned corner = 0; corner < 4; ++corner) {
@@ -54,8 +54,8 @@ bool CoreMesh::moves(const WallSide& side) const {
   return std::any_of(side.nodes.begin(), side.nodes.end(), [&](Index n) { return heights_[n] > 0; });
 }
 
-/// Turns the moving faces of walls into faces of the front. If an interface moves on one side only, its own
-/// faces stay for the other side.
+/// Turns the moving faces of walls into faces of the front. If an interface moves on one side only, adds
+/// faces with the wall's own nodes for the other side.
 void CoreMesh::replace_walls() {
   std::vector<std::uint8_t> replaced(mesh.faces.size(), 0);
   std::vector<NewFace> faces;
@@ -88,7 +88,7 @@ void CoreMesh::replace_walls() {
   }
 }
 
-/// Makes edges of curves that lead away from walls begin at the copies.
+/// Replaces moving nodes by their copies in edges of curves that lead away from walls.
 void CoreMesh::copy_ends_of_edges() {
   for (Index n = 0; n < front_.nodes.size(); ++n)
     for (const Index e : front_.edges_of[n])

@@ -9,8 +9,8 @@
 
 namespace collarmesh::layering {
 
-/// The mesh of the core before anything moves: a copy of the mesh with a duplicate, at the same place, of
-/// each node of the front that will move. The faces of walls become those of the front.
+/// The mesh of the core before anything moves: the mesh with a copy, at the same place, of each node of the
+/// front that will move. The faces of walls become faces of the front.
 class CoreMesh {
  public:
   CoreMesh(const TetMesh& given, const Front& front, const Heights& heights);

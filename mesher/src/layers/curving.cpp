@@ -1,5 +1,5 @@
-// Gives meshes with layers second order: first the core, then the cells of layers. Their edges bulge like
-// those of the wall below, but less and less towards the core, where they are straight.
+// Adds mid-edge nodes to meshes with layers: first to the core, then to the cells of layers. Edges of layers
+// bulge like the wall's edges below, but less and less towards the core, where they are straight.
 #include "layers/curving.h"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::array<EdgePlaces, 3> triangle_edges{{{0, 1}, {1, 2}, {2, 0}}};
 
-// Where cells fold, bulges shrink by this factor, at most a fixed number of times, and are then left out.
+// Where cells fold, bulges shrink by this factor, at most this many times, and are then left out.
 constexpr double shrinking = 0.5;
 constexpr unsigned most_shrinkings = 5;
 
@@ -46,7 +46,7 @@ class LayerCurving {
  private:
   using Edge = std::array<Index, 2>;
   using Shares =
-      std::unordered_map<std::uint64_t, double>;  // remaining shares of bulges, by edge key of the wall
+      std::unordered_map<std::uint64_t, double>;  // remaining shares of bulges, by key of the wall's edge
 
   bool in_core(Index tet) const { return mesh_.layers.tet_layer[tet] == 0; }
 
@@ -160,8 +160,8 @@ class LayerCurving {
     note_patches(layers.quad_mid_nodes, layers.quad_patch);
   }
 
-  /// Finds the wall edges of the core between two nodes without layers. `curve_core` left them straight below
-  /// triangles of the front; elsewhere it may have moved their nodes.
+  /// Finds the core's mid-edge nodes on walls: those of edges between two points without layers. `curve_core`
+  /// left these edges straight below triangles of the front; elsewhere it may have moved their nodes.
   void find_wall_nodes_of_core() {
     for (std::size_t f = 0; f < mesh_.faces.size(); ++f)
       for (unsigned k = 0; k < 3; ++k) {
@@ -230,8 +230,8 @@ class LayerCurving {
     return found == shares.end() ? 1 : found->second;
   }
 
-  /// Places the nodes of layers, and shrinks the bulges of cells that fold until none folds. Returns the wall
-  /// edges of cells that still fold.
+  /// Places the nodes of layers, and shrinks the bulges of cells that fold until none folds or the bulges are
+  /// zero. Returns the wall edges of cells that still fold.
   std::vector<Edge> straighten_while_folded(Shares& left) {
     for (unsigned pass = 0;; ++pass) {
       place_nodes();

@@ -3,9 +3,9 @@
 // Uses the method of Frank and Wolfe, in its variant that moves weight from the normal with the largest
 // cosine to the one with the smallest.
 //
-// Where walls meet sharply, uses Gilbert's algorithm, which only adds weight. After the same number of steps
-// its result is nearer to the mean of the normals than that of the other method. In such places, layers along
-// this direction become higher and cover more than along the steepest one.
+// Where walls meet sharply, uses Gilbert's algorithm, which only adds weight. It converges more slowly, so
+// that after the permitted steps its direction is still nearer to the mean of the normals than the steepest
+// one. In such places, layers along its direction become higher and cover more of the walls.
 #include "layers/direction.h"
 
 #include <algorithm>
@@ -19,12 +19,13 @@ constexpr unsigned most_steps = 200;
 constexpr double direction_precision = 1e-6;
 // Walls with a smaller cosine to the best direction meet sharply.
 constexpr double narrow = 0.6;
-// The direction from means of normals is used if its least cosine exceeds this share of the best one's.
+// The direction from means of normals is used if its least cosine exceeds this share of the steepest
+// direction's, and `narrow`.
 constexpr double steep_enough = 0.85;
 // Two planes count as the same if the sine of the angle between them is at most this.
 constexpr double parallel = 1e-4;
-// If only one direction is possible, it may deviate from each line and plane on which the node has to stay by
-// an angle with this sine: normals of curved patches are means over triangles, so the constraints agree only
+// If only one direction is possible, the sine of its angle to each line and plane on which the node has to
+// stay may be up to this: normals of curved patches are means over triangles, so the constraints agree only
 // roughly.
 constexpr double nearly_parallel = 0.02;
 
@@ -72,8 +73,7 @@ Vector DirectionSearch::nearest_to_origin(const std::vector<Vector>& of) const {
   return nearest;
 }
 
-/// Returns a point of the hull that is not quite the nearest to the origin, but nearer to the mean of the
-/// normals.
+/// Returns a point of the walls' hull between the mean of their normals and the point nearest to the origin.
 Vector DirectionSearch::nearest_from_mean() const {
   Vector nearest{};
   for (const Vector& n : walls_) nearest = nearest + in_plane(n) / static_cast<double>(walls_.size());

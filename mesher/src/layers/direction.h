@@ -19,7 +19,7 @@ class DirectionSearch {
   /// Adds the normal of a wall: a unit vector that points away from the wall.
   void add_wall(const Vector& normal) { walls_.push_back(normal); }
   /// Adds the mean of the normals of walls that approximate one curved wall. If there are means, the
-  /// direction is as steep as possible above them, unless it is then much flatter above a single wall.
+  /// direction is as steep as possible above them, unless it would be much less steep above one of the walls.
   void add_mean(const Vector& normal) { means_.push_back(normal); }
   void stay_in_plane(const Vector& normal) { planes_.push_back(normal); }
   void stay_on_line(const Vector& way) { lines_.push_back(way); }

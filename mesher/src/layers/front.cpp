@@ -18,7 +18,7 @@ namespace {
 // Limit on the tets followed around an edge; valid meshes have fewer.
 constexpr unsigned most_around = 10'000;
 
-/// Returns whether two triangles of the same corners are oriented alike.
+/// Returns whether two triangles with the same corners are oriented alike.
 bool is_alike(const std::array<Index, 3>& t, const std::array<Index, 3>& u) {
   for (unsigned i = 0; i < 3; ++i)
     if (u[i] == t[0]) return u[(i + 1) % 3] == t[1];

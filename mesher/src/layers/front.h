@@ -24,7 +24,7 @@ struct Lists {
   void end_group() { first.push_back(static_cast<Index>(entries.size())); }
 };
 
-/// Returns, sorted, the nodes at most `rings` steps away from one of these. `neighbours`: by node.
+/// Returns the nodes at most `rings` steps away from one of `nodes`, sorted. `neighbours`: by node.
 std::vector<Index> within_rings(const Lists& neighbours, std::vector<Index> nodes, unsigned rings);
 
 /// A side of a wall's triangle that gets layers.
@@ -52,10 +52,10 @@ struct WallSide {
 struct FrontNode {
   Index vertex = none;
   Vector direction{};  ///< unit; into the sector
-  /// Each patch has a mean cosine between the direction and the normals of its sides, weighted by angles.
-  /// This is the least of these means.
+  /// The mean cosine between the direction and the normals of a patch's sides, weighted by angles, for the
+  /// patch where it is least.
   double cosine = 0;
-  double least_cosine = 0;  ///< the least cosine of all sides
+  double least_cosine = 0;  ///< the least cosine between the direction and the normal of a side
   bool blocked = false;     ///< there can be no layer
   /// The feature without layers along which the node slides.
   TetMesh::VertexFeature slides_on = {};
@@ -68,7 +68,7 @@ class Front {
   Front(const remeshing::TetComplex& complex, const Plc& plc, const WallChoice& walls);
 
   std::vector<WallSide> sides;
-  /// Sides of walls that get no layers while the other side does; they have no nodes and no edges.
+  /// Sides of walls whose triangles get layers only on the other side; they have no nodes and no edges.
   std::vector<WallSide> bare_sides;
   std::vector<FrontNode> nodes;
   Lists sides_at;              ///< by node: sides with it

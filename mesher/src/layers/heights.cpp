@@ -14,7 +14,7 @@ namespace collarmesh::layering {
 
 namespace {
 
-// Height of the first layer if none is given, relative to the edges of the wall.
+// Height of the first layer if none is given, relative to the mean length of the wall's edges at a node.
 constexpr double share_of_edges = 0.1;
 // Cosines between a direction and a wall's normal. Below `flattest` there are no layers. A node moves by the
 // height divided by the cosine or, if the cosine is below `flat`, divided by `flat`.
@@ -190,6 +190,7 @@ void Heights::fit_bulges(const Bulges& bulges) {
 }
 
 /// Returns the least Jacobian in the stack on a side, relative to the largest one; 1 if there is no stack.
+/// For a stack of tets returns only the sign, 1 or -1.
 double Heights::relative_jacobian(const WallSide& side) const {
   std::array<Point, 3> below, above;
   unsigned raised = 0, first_raised = 0, first_low = 0;
@@ -224,7 +225,8 @@ double Heights::relative_jacobian(const WallSide& side) const {
   return least / largest;
 }
 
-/// Lowers the stacks whose cells fold; leaves them out if `strictly`. Returns whether any cells fold.
+/// Lowers the stacks with cells that fold or nearly fold; leaves them out if `strictly`. Returns whether
+/// there were such cells.
 bool Heights::unfold(bool strictly) {
   std::vector<std::uint8_t> folded(front_.sides.size(), 0);
   parallel_for_ranges(folded.size(), nodes_at_once, [&](std::size_t first, std::size_t last) {
@@ -240,7 +242,8 @@ bool Heights::unfold(bool strictly) {
   return !at.empty();
 }
 
-/// Lowers stacks to at most twice the heights of their neighbours, starting from the lowest.
+/// Lowers stacks to at most twice the heights of neighbouring stacks, starting from the lowest. Returns
+/// whether it lowered any.
 bool Heights::limit_steps() {
   using Item = std::pair<double, Index>;
   std::priority_queue<Item, std::vector<Item>, std::greater<>> queue;

@@ -18,7 +18,7 @@ std::string text_of(Cause cause);
 /// The distances by which a front's nodes are pushed along their directions.
 class Heights {
  public:
-  /// Sets the distances that are asked for, and 0 where there can be no layers. Keeps references to all
+  /// Sets the distances that the options ask for, and 0 where there can be no layers. Keeps references to all
   /// arguments.
   Heights(const Front& front, const TetMesh& mesh, const Plc& plc, const WallChoice& walls);
 
@@ -38,7 +38,7 @@ class Heights {
   Point place(Index node, double distance) const;
   Point place(Index node) const { return place(node, length_[node]); }
 
-  /// Copies the distances of other heights of the same front.
+  /// Copies the distances, and the causes, of other heights of the same front.
   void take(const Heights& others) {
     length_ = others.length_;
     cause_ = others.cause_;
@@ -48,9 +48,9 @@ class Heights {
   /// Lowers distances in gaps, so that the layers on both sides leave a part of each gap to the tets between
   /// them.
   void fit_gaps();
-  /// Lowers distances where nodes would leave curved patches on which they slide.
+  /// Lowers distances where nodes would leave the tolerance of a curved patch on which they slide.
   void fit_patches(const remeshing::SmoothSurfaces& surfaces, const SurfaceTolerance& tolerance);
-  /// Leaves layers out where edges of the wall bulge by more than a certain share of the layers' height.
+  /// Leaves layers out where edges of the wall bulge into them by more than a share of their height.
   void fit_bulges(const Bulges& bulges);
   /// Lowers distances where cells would fold, and where neighbours have less than half the height. Returns
   /// whether it lowered any.

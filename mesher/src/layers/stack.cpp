@@ -169,7 +169,8 @@ void Stack::add_prism(const std::array<Index, 6>& corners, const WallSide& side,
   mesh_.layers.prism_layer.push_back(static_cast<std::uint16_t>(layer));
 }
 
-/// Adds a pyramid, or two tets that divide its base by the diagonal from its first corner or from its second.
+/// Adds a pyramid or, if the layers are tets, two tets. Their common face contains the base's diagonal from
+/// the first corner, or the one from the second.
 void Stack::add_pyramid(const std::array<Index, 5>& corners, bool from_first, const WallSide& side,
                         unsigned layer) {
   if (!tets_) {
@@ -184,8 +185,8 @@ void Stack::add_pyramid(const std::array<Index, 5>& corners, bool from_first, co
   add_tet(from_first ? std::array{a, apex, c, d} : std::array{b, d, apex, c}, side, layer);
 }
 
-/// Divides a prism into tets. The diagonal of each side begins at its lower corner above the wall's node with
-/// the smaller number.
+/// Divides a prism into tets. The diagonal of each quadrangle begins at its lower corner above the wall's
+/// node with the smaller number.
 void Stack::divide_prism(const WallSide& side, unsigned layer) {
   std::array<unsigned, 3> order{0, 1, 2};
   std::sort(order.begin(), order.end(),

@@ -119,8 +119,8 @@ WallChoice::WallChoice(const LayerOptions& options, const Plc& plc) : wall_of_(p
   put_on_all(options, plc);
 }
 
-/// Throws OptionError if layers would be so thin that coordinates cannot tell their sides apart, even if all
-/// layers together were as high as the shape.
+/// Throws OptionError if a first layer would be so thin that coordinates cannot tell its sides apart. Assumes
+/// that all layers of a wall together are at most as high as the shape's diagonal.
 void WallChoice::require_heights(const LayerOptions& options, const Plc& plc) const {
   constexpr double least_share_of_shape = 1e-10;
   Box box;
@@ -188,7 +188,7 @@ void WallChoice::put_on_named(const Plc& plc) {
   }
 }
 
-/// Puts layers on the boundaries that no text names.
+/// Puts the layers of texts for all faces on the boundary patches that no other text names.
 void WallChoice::put_on_all(const LayerOptions& options, const Plc& plc) {
   for (Index w = 0; w < walls_.size(); ++w) {
     if (!walls_[w].faces.empty()) continue;

@@ -14,8 +14,9 @@ namespace collarmesh::layering {
 /// The layers that the options ask for, by patch of a complex.
 class WallChoice {
  public:
-  /// Throws OptionError if a wall does not exist or gets layers twice, if a text puts layers on no patch, or
-  /// if first layers would be too thin for the shape's coordinates.
+  /// Throws OptionError if a wall or region does not exist, if a wall gets layers twice or is not beside the
+  /// region that its text names, if a text puts layers on no patch, or if a first layer would be too thin
+  /// relative to the shape.
   WallChoice(const LayerOptions& options, const Plc& plc);
 
   bool is_wall(Index patch) const { return patch != none && wall_of_[patch] != none; }
@@ -42,7 +43,7 @@ class WallChoice {
 
   std::vector<WallLayers> walls_;
   std::vector<std::string> only_in_;      // by wall: the region that the text names; empty: none
-  std::vector<std::set<Index>> regions_;  // by wall: the regions that get its layers; empty: any
+  std::vector<std::set<Index>> regions_;  // by wall: the regions that get its layers; empty: all
   std::vector<Index> wall_of_;            // by patch: index of its layers, or none
 };
 

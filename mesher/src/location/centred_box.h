@@ -15,7 +15,7 @@ struct CentredBox {
   Vector half;
 
   CentredBox() = default;
-  /// Returns a box that nothing meets, however near.
+  /// Returns a box that meets nothing.
   static CentredBox empty() {
     CentredBox box;
     box.half = {-INFINITY, -INFINITY, -INFINITY};

@@ -17,12 +17,13 @@ namespace collarmesh {
 
 /// Segments in one neighbourhood, prepared for tests against many boxes: by separating axes as in
 /// SegmentAgainstBoxes, four segments at a time. Works in single precision relative to the neighbourhood.
-/// Boxes are widened by more than the rounding errors, so it never misses a box that a segment meets.
+/// Conservative: boxes are widened by more than the rounding errors, so that no box that a segment meets is
+/// missed.
 class SegmentBundle {
  public:
-  /// Bit i stands for segment i of a part.
+  /// A set of segments of one part of the bundle; bit i stands for segment i of the part.
   using Mask = std::uint64_t;
-  /// The number of segments that one mask covers.
+  /// The number of segments in a part; the last part may have fewer.
   static constexpr std::size_t part_size = 64;
 
   /// Starts a new bundle. All points must lie in the ball B(centre, radius). Precondition: radius > 0.
@@ -85,8 +86,8 @@ class SegmentBundle {
   static constexpr std::size_t lane_count = 4;
   static constexpr Mask lanes_of_a_group = 15;
   // Bound on rounding. Numbers in single precision have a relative error of 6e-8. The points are at most 1
-  // from the centre, so their error is at most 6e-8; the tests err by a few times as much, relative to the
-  // extent of the boxes that the segments meet.
+  // from the centre, so their error is at most 6e-8. For a box whose longest side is 2 `half`, the tests err
+  // by at most a few times 6e-8 (1 + `half`).
   static constexpr double slack = 4e-6;
   using Lanes [[gnu::vector_size(lane_count * sizeof(float))]] = float;
   using Truths [[gnu::vector_size(lane_count * sizeof(float))]] = std::int32_t;

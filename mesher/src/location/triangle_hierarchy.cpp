@@ -78,7 +78,7 @@ TriangleHierarchy::Bounds::Bounds(const Box& of_triangles) : box(of_triangles) {
   extent = std::max({sides.x, sides.y, sides.z});
 }
 
-// Returns the common label below each node. Children come after their parents.
+// Works from the last node to the first, because children come after their parents.
 std::vector<Index> TriangleHierarchy::common_labels(std::span<const Index> label_of_triangle) const {
   assert(label_of_triangle.size() == triangles_.size());
   std::vector<Index> labels(tree_.node_count());

@@ -56,10 +56,10 @@ class TriangleHierarchy {
     return {points_[t[0]], points_[t[1]], points_[t[2]]};
   }
 
-  /// Replaces `found` by the nodes whose boxes meet the box, each at the coarsest level whose extent does not
-  /// exceed `extent`, and by larger triangles whose boxes and planes meet the box. Precondition: the nodes of
-  /// `from` cover every triangle that meets the box. A node found may contain no triangle that meets the box.
-  /// Cost: linear in the nodes found plus the levels between them and `from`.
+  /// Replaces `found` by nodes that contain all triangles that meet `box`: the coarsest nodes whose boxes
+  /// meet it and are not longer than `extent`, and leaves of larger triangles, unless these certainly miss
+  /// it. Precondition: the nodes of `from` contain all triangles that meet `box`. A node found may contain no
+  /// such triangle. Cost: linear in the nodes found plus the levels between them and `from`.
   void nodes_meeting(const Box& box, double extent, std::span<const Index> from, Marks& marks,
                      std::vector<Index>& found) const;
 
@@ -81,8 +81,8 @@ class TriangleHierarchy {
   /// Returns the direction in which the segment pq crosses one triangle; 0 if it does not cross it.
   int crossing(const Point& p, const Point& q, Index triangle) const;
 
-  /// Returns the squared distance from p to the nearest triangle if it is below `bound`. Otherwise returns
-  /// `bound` and leaves `nearest` unchanged.
+  /// Returns the squared distance from p to the nearest triangle, and its number in `nearest`, if the squared
+  /// distance is below `bound`. Otherwise returns `bound` and leaves `nearest` unchanged.
   double squared_distance_to(const Point& p, double bound = INFINITY, Index* nearest = nullptr) const {
     return squared_distance_to(p, bound, nearest, [](Index) { return true; });
   }
@@ -93,7 +93,7 @@ class TriangleHierarchy {
     return squared_distance_to(
         p, bound, nearest, [](Index) { return false; }, counts);
   }
-  /// Returns the same without visiting triangles below nodes that `skips` accepts.
+  /// Does the same, but leaves out triangles below nodes that `skips` accepts.
   template <class Skips, class Counts>
   double squared_distance_to(const Point& p, double bound, Index* nearest, const Skips& skips,
                              const Counts& counts) const;
@@ -108,8 +108,8 @@ class TriangleHierarchy {
   template <class Counts>
   Index triangle_within(const Point& p, double bound, Index hint, const Counts& counts) const;
 
-  /// Visits triangles below `nodes`, near ones first, as long as the squared distances of their boxes from p
-  /// are below the bound. The visitor may lower the bound.
+  /// Visits the triangles whose boxes have squared distances from p below the bound: for each of the `nodes`
+  /// the triangles below it, near ones first. The visitor may lower the bound.
   template <class Visit>
   void visit_near(std::span<const Index> nodes, const Point& p, const double& squared_bound,
                   const Visit& visit) const {

@@ -30,8 +30,9 @@ class VoronoiWalk {
     }
   }
 
-  /// Visits the vertices whose cells meet B(x, r), and few others, breadth first from the vertex whose cell
-  /// contains x. The visitor may make the ball smaller: `squared_radius` is read again for every vertex.
+  /// Visits the vertices whose cells meet the ball of this squared radius around x, and few others, breadth
+  /// first from `nearest`, the vertex whose cell contains x. The visitor may make the ball smaller:
+  /// `squared_radius` is read anew for every vertex.
   template <class Visit>
   void visit_ball(const Point& x, Index nearest, const double& squared_radius, const Visit& visit) {
     found_.assign(1, nearest);

@@ -32,7 +32,8 @@ std::optional<OptionValue> read_word(const Option& option, const std::string& te
   return std::holds_alternative<bool>(option.get({})) ? OptionValue(word == option.words.begin()) : text;
 }
 
-/// Returns the value of a repeatable option with one more entry.
+/// Returns the value of a repeatable option after the entry `text` is added to it; nothing if `text` is
+/// malformed.
 std::optional<OptionValue> read_more(const std::string& text, OptionValue value) {
   if (auto* const texts = std::get_if<std::vector<std::string>>(&value)) {
     texts->push_back(text);
@@ -114,8 +115,8 @@ void require_as_profile_sets(const RunOptions& options) {
   for (const Option& option : option_table()) {
     const OptionValue value = option.get(options);
     if (value == option.get(set) || value == option.get(defaults)) continue;
-    throw OptionError(fmt::format("{} {} contradicts profile paper, which sets {}; leave it out", option.name,
-                                  text_of(option, value), text_of(option, option.get(set))));
+    throw OptionError(fmt::format("{} {} contradicts profile paper, which sets {}; leave out one of the two",
+                                  option.name, text_of(option, value), text_of(option, option.get(set))));
   }
 }
 

@@ -23,8 +23,8 @@ constexpr Kind kind_of(bool has_words) {
   return std::is_same_v<T, std::vector<std::string>> ? Kind::texts : Kind::sizes;
 }
 
-/// Access to a member of RunOptions, or of a struct in it. `has_words`: the member is an enumeration whose
-/// values the option gives as words.
+/// Access to a member of RunOptions, or of a struct in it. `has_words`: the member is a bool or an
+/// enumeration, and the option has a word for each of its values.
 template <bool has_words, auto... members>
 struct At {
   static auto& of(auto& options) { return (options.*....*members); }
@@ -66,14 +66,15 @@ constexpr Option::Place in_mesh = at<&RunOptions::mesh, member>;
 template <auto member>
 constexpr Option::Place in_bounds = at<&RunOptions::mesh, &MeshOptions::bounds, member>;
 
-/// The bound on the radius-edge ratio. Without this option tets may be thin anywhere.
+/// The bound on the radius-edge ratio. Setting it also restricts thin tets to creases and narrow places;
+/// without this option they may be anywhere.
 constexpr Option::Place asked_ratio{Kind::number, in_bounds<&Bounds::radius_edge>.get,
                                     [](const Option&, RunOptions& options, const OptionValue& value) {
                                       options.mesh.bounds.radius_edge = std::get<double>(value);
                                       options.mesh.bounds.thin_in_narrow_places_only = true;
                                     }};
 
-/// The dimension of the elements. Below 3, the facets need not bound a solid.
+/// The dimension of the elements. If it is below 3, the facets need not bound a solid.
 constexpr Option::Place asked_dimension{Kind::count, at<&RunOptions::dimension>.get,
                                         [](const Option&, RunOptions& options, const OptionValue& value) {
                                           options.dimension =
@@ -165,9 +166,10 @@ std::vector<Option> quality_options() {
       {.name = "start",
        .words = {"auto", "refinement", "constrained"},
        .place = choice_at<&RunOptions::start>,
-       .help = "Mesh that the run begins with; constrained: tetrahedra with the facets as they are",
+       .help =
+           "Mesh that the run begins with; constrained: tetrahedra that keep the input's facets as they are",
        .details =
-           "`auto`: refinement, and `constrained` where that takes far more vertices than the sizes ask "
+           "`auto`: refinement, or `constrained` if refinement takes far more vertices than the sizes ask "
            "for; see [Parts that explode](architecture/constrained.md)",
        .commands = refining},
       {.name = "radius-edge RHO",
@@ -186,8 +188,8 @@ std::vector<Option> quality_options() {
        .finer = true,
        .zero = true,
        .default_text = "none",
-       .help = "Refine until at each vertex the largest circumradius / the shortest edge is below this, "
-               "which must exceed 2 sqrt 2",
+       .help = "Refine until, at each vertex, the largest circumradius / the shortest edge is below this "
+               "bound, which must exceed 2 sqrt 2",
        .details = "not certified: coarsening and improvement may exceed it, so a warning asks for "
                   "`--coarsen off`",
        .commands = refining},
@@ -210,8 +212,9 @@ std::vector<Option> quality_options() {
       {.name = "theta THETA",
        .place = in_mesh<&MeshOptions::theta>,
        .high = 0.449,
-       .help = "Instead of a gap ball's centre, insert a point of the input that is nearer to it than this "
-               "share of the ball's radius; 0: never",
+       .help = "If a point of the input is nearer to the centre of a gap ball than this share of the ball's "
+               "radius, insert that point in place of the centre; 0: never",
+       .details = "see [Theory](theory.md)",
        .commands = refining},
       {.name = "distance LENGTH",
        .place = in_bounds<&Bounds::distance>,
@@ -251,8 +254,8 @@ std::vector<Option> quality_options() {
        .low = 0.1,
        .high = largest_thin_angle,
        .zero = true,
-       .help = "Smallest dihedral angle of thin tetrahedra, at sharper creases half of the crease's angle; "
-               "0: none may be thin",
+       .help = "Smallest dihedral angle of thin tetrahedra; at creases below twice this angle, half of the "
+               "crease's angle; 0: no tetrahedron may be thin",
        .details = "values below 5 save tetrahedra in sharp wedges only",
        .commands = judging},
       {.name = "improve LEVEL",
@@ -317,7 +320,7 @@ std::vector<Option> split_options() {
        .details = "see [Cracks](embedded.md#open-the-crack)"},
       {.name = "keep-apart",
        .place = at<&RunOptions::split, &SplitOptions::keep_apart>,
-       .help = "Split all patches between two regions in the same way"},
+       .help = "Split all patches between two regions, as --split does with one patch"},
       {.name = "interaction",
        .words = {"free", "tie", "contact"},
        .place = choice_at<&RunOptions::split, &SplitOptions::interaction>,
@@ -395,7 +398,8 @@ std::vector<Option> complex_options() {
        .unit = Unit::degrees,
        .high = 180,
        .help =
-           "Edges that deviate more than this from flat are kept as edges; 0: every edge that is not flat"},
+           "Keep edges at which the surface turns by more than this angle; 0: keep every edge that is not "
+           "flat"},
       {.name = "planar-tolerance T",
        .place = at<&RunOptions::complex, &PlcOptions::planar_tolerance>,
        .unit = Unit::of_diagonal,
@@ -436,7 +440,8 @@ std::vector<Option> complex_options() {
        .unit = Unit::of_diagonal,
        .low = 1e-4,
        .high = 0.1,
-       .help = "Distance of the surface of --repair wrap from the input, relative to the diagonal",
+       .help = "Distance from the input to the surface that --repair wrap puts around it, relative to the "
+               "diagonal",
        .commands = complexes},
       {.name = "overlap",
        .words = {"first", "region"},
@@ -552,8 +557,8 @@ std::vector<Option> rank_options() {
            .help = "Degrees by which dihedral angles may go beyond those of the coarse mesh"}};
 }
 
-/// Adds rows, with the properties that most rows of a group share. In a row, the option's name is followed by
-/// the name of its value.
+/// Adds `options` as rows; `group` and `commands` apply to rows that do not set their own. In `options`, the
+/// name of an option is followed by the name of its value.
 void append(std::vector<Option>& table, std::vector<Option> options, const char* group, unsigned commands) {
   for (Option& option : options) {
     const std::size_t space = std::min(option.name.find(' '), option.name.size());

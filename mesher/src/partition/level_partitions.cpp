@@ -69,7 +69,7 @@ class Levelling {
     }
   }
 
-  /// Removes one tet from a partition with too many.
+  /// Takes one tet from a partition with too many, and passes tets on to one with room.
   void relieve(Part full) {
     std::unordered_map<Part, Part> before{{full, full}};
     std::queue<Part> reached;

@@ -31,7 +31,7 @@ ScotchPartition find_scotch() {
 #else
   throw OptionError(
       "partitions cannot be made, because the program was built without Scotch; install libscotch-dev and "
-      "build it again");
+      "build the program again");
 #endif
 }
 

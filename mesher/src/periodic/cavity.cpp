@@ -9,9 +9,9 @@
 
 namespace collarmesh::periodicity {
 
-// Makes the cavity of all tets at a simplex (a vertex, an edge or a face), whose vertices `is_of` accepts.
-// Sides that contain the simplex are removed, with the faces on them. The edges of these faces opposite a
-// vertex of the simplex form the rim; the sides of the tets opposite such a vertex form the hull.
+// Makes the cavity of `tets`, all tets at a simplex (a vertex, an edge or a face). `is_of` tells the
+// simplex's vertices. Faces of the mesh at the simplex are removed; their edges opposite a vertex of the
+// simplex form the rim. The sides of the tets opposite a vertex of the simplex form the hull.
 template <class IsOf>
 Cavity CavityEditor::cavity_of(std::vector<Index> tets, const IsOf& is_of) const {
   Cavity cavity;

@@ -17,7 +17,7 @@ struct Cavity {
     Index like;                    ///< the tet whose region the new tet gets
   };
   struct Rim {
-    std::array<Index, 2> ends;  ///< corners of a new face; the apex follows them
+    std::array<Index, 2> ends;  ///< first two corners of a new face; the third one is the apex
     Index like;                 ///< the face whose patch the new face gets
   };
   std::vector<Index> tets;
@@ -39,14 +39,15 @@ class CavityEditor {
   const TetMesh& mesh() const { return mesh_; }
   const Point& at(Index vertex) const { return mesh_.points[vertex]; }
 
-  /// Return the tets at a vertex, edge or face, with all the mesh's faces there. Empty if bodies touch at
-  /// each of its vertices (TetComplex::pinched).
+  /// Return the cavity of all tets and faces of the mesh at a vertex, edge or face; empty if bodies touch at
+  /// every vertex of it (TetComplex::pinched).
   Cavity around_vertex(Index vertex) const;
   Cavity around_edge(Index a, Index b) const;
   Cavity around_face(Index face) const;
 
-  /// Returns the quality of the worst tet if the cavity is filled with this apex; negative if it is below
-  /// `least_quality`. `vertex` is the apex, or none if it is new; sides that contain it do not count.
+  /// Returns the quality of the worst tet if the cavity is filled with this apex; negative if that is below
+  /// `least_quality` or the cavity is empty. `vertex` is the apex's number, or none if the apex is new. Sides
+  /// that contain the apex do not count.
   double worst(const Cavity& cavity, const Point& apex, Index vertex) const;
 
   /// Fills the cavity with tets that share the apex.

@@ -11,13 +11,13 @@ namespace collarmesh::periodicity {
 
 namespace {
 
-constexpr double near = 0.3;  // relative to the length of the edges at a node: a node this near to a place is
-                              // moved there
+constexpr double near = 0.3;  // relative to the shortest edge of the chain at a node: a node this near to a
+                              // place is moved there
 constexpr double good_removal = 0.3;  // quality that a removal must leave; otherwise the node is kept and
                                       // inserted on the pair's other curve
 constexpr double good_enough = 0.1;   // quality that a move must leave unless tets are poorer already
 
-/// Follows the edges of one curve.
+/// Returns the chain of one curve's edges: from `start` or, if `start` is none, around a closed curve.
 Chain follow(std::vector<std::array<Index, 2>> edges, Index start) {
   std::map<Index, std::vector<Index>> joined;
   for (const auto& [a, b] : edges) joined[a].push_back(b), joined[b].push_back(a);
@@ -119,7 +119,7 @@ class ChainEditor {
 
   // Removes a node by collapsing one of its edges, to the neighbour that leaves better tets.
   bool remove(std::size_t i) {
-    if (size() < 4) return false;  // a closed chain keeps at least three nodes
+    if (size() < 4) return false;  // keeps at least three nodes, which a closed chain needs
     const Index node = chain_.nodes[i], before = chain_.nodes[(i + size() - 1) % size()],
                 after = chain_.nodes[(i + 1) % size()];
     if (editor_.on_curve(before, after)) return false;

@@ -19,7 +19,7 @@ struct Chain {
   Index end(std::size_t edge) const { return nodes[(edge + 1) % nodes.size()]; }
 };
 
-/// Returns the chains of all curves.
+/// Returns the chains, by curve; empty ones for curves without edges in the mesh.
 std::vector<Chain> chains_of(const TetMesh& mesh, const Plc& plc);
 
 /// The numbers of nodes that a change of a chain inserted and removed.
@@ -28,17 +28,17 @@ struct ChainChange {
   std::vector<Point> stuck;  ///< places of nodes that could not be removed
 };
 
-/// Gives the chain of a curve nodes at exactly these places, apart from the nodes at its ends, which stay.
-/// Moves nodes that are near a place, inserts new nodes, and removes the rest. Nodes that cannot be removed
-/// stay.
+/// Makes the nodes of a curve's chain lie at exactly these places, apart from the nodes at its ends, which
+/// stay. Moves nodes that are near a place, inserts new nodes, and removes the rest. Nodes that cannot be
+/// removed stay.
 ChainChange put_nodes(CavityEditor& editor, Index curve, Chain& chain, std::span<const Point> places);
-/// Gives the chain nodes at these places: moves nodes that are near a place, and inserts new ones. All other
-/// nodes stay. Appends the nodes at these places, and those at vertices of the complex, to `nodes`.
+/// Makes nodes of the chain at these places: moves nodes that are near a place, and inserts new ones. All
+/// other nodes stay. Appends the nodes at these places, and those at vertices of the complex, to `nodes`.
 ChainChange add_nodes(CavityEditor& editor, Index curve, Chain& chain, std::span<const Point> places,
                       std::vector<Index>& nodes);
 
-/// Returns the nodes of `second` that correspond to those of `first` after the motion, in the same or in the
-/// opposite order. Empty if the numbers of nodes differ.
+/// Returns, for each node of `first`, the node of `second` that is its image under the motion; empty if the
+/// numbers of nodes differ. The chains may run in opposite directions.
 std::vector<Index> corresponding(const TetMesh& mesh, const Chain& first, const Chain& second,
                                  const Motion& motion);
 

@@ -8,7 +8,7 @@
 namespace collarmesh::periodicity {
 
 namespace {
-constexpr unsigned edges_between = 6;  // edges between the part that changes and the part that stays
+constexpr unsigned edges_between = 6;  // vertices more than this many edges away from all pairs stay
 }
 
 void change_across(TetMesh& mesh, const Plc& plc, const PeriodicOptions& options, double distance,

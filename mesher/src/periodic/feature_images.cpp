@@ -120,8 +120,8 @@ class Matcher {
     return points;
   }
 
-  /// Returns the largest distance between two polylines, in both directions. If already their boxes are too
-  /// far from each other, returns only the distance of the boxes.
+  /// Returns the largest distance of a point of either polyline from the other polyline. If their boxes
+  /// differ by too much, returns the larger distance between corresponding corners of the boxes instead.
   Deviation deviation(const std::vector<Point>& a, const std::vector<Point>& b) const {
     Box box_of_a, box_of_b;
     for (const Point& p : a) box_of_a.add(p);

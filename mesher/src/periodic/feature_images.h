@@ -14,9 +14,10 @@ struct FeatureImages {
   Images vertices, curves, patches;
 };
 
-/// Finds the images. A vertex must be at the place of its image except for the rounding of the input; curves
-/// that are not straight must be within `distance` of their images. Throws OptionError if a feature has no
-/// image: the message names the feature, the place of its image and the distance of the nearest candidate.
+/// Finds the images. A moved vertex or straight curve must be at its image, except for the rounding of the
+/// input; other moved curves must be within `distance` (in input units) of their images. Throws OptionError
+/// if a feature has no image, and names the feature and, for a vertex or curve, the distance to the nearest
+/// candidate. Throws OptionError, too, if the groups have different numbers of features.
 /// Cost: the product of the numbers of curves of both groups, for comparing boxes.
 FeatureImages find_images(const PatchPair& pair, const Plc& plc, double distance);
 

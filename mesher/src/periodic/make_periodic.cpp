@@ -96,9 +96,9 @@ struct Surface {
     }
     return places;
   }
-  /// Returns the places of the nodes inside a patch, each with the length of its shortest edge there.
-  /// `targets`: target edge lengths by vertex; if there are any, leaves out nodes that are far nearer to
-  /// other nodes than these lengths.
+  /// Returns the places of the nodes inside a patch, each with the length of its shortest edge there. If
+  /// there are target edge lengths (`targets`, by vertex), returns only nodes far enough from each other,
+  /// with these lengths (see `sparse_nodes`).
   std::vector<SpacedPlace> spaced_inside(const TetMesh& mesh, Index patch,
                                          const std::vector<double>& targets) const {
     if (!targets.empty()) return sparse_nodes(mesh, faces[patch], targets);
@@ -257,7 +257,7 @@ class Maker {
   const Periodicity periodicity_;
   CavityEditor editor_;
   Surface surface_;
-  std::map<Index, Index> image_of_;  // images of the nodes of the pair's first group
+  std::map<Index, Index> image_of_;  // images of the nodes of the current pair's first group
   PeriodicReport report_;
 };
 

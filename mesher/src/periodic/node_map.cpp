@@ -13,8 +13,8 @@ namespace collarmesh::periodicity {
 
 namespace {
 
-// Largest distance of an image from its node, relative to the diagonal. Vertices of CAD shapes are images of
-// each other only to 1e-7.
+// Largest distance between the moved place of a corner and its image, relative to the diagonal of the second
+// faces. Vertices of CAD shapes are images of each other only to 1e-7.
 constexpr double apart = 1e-6;
 
 /// The corners of faces with certain tags, sorted, and the edges of these faces with their mid-edge nodes.
@@ -39,7 +39,7 @@ Nodes nodes_of(const TetMesh& mesh, std::span<const Tag> tags, std::size_t& face
   return nodes;
 }
 
-/// Returns the image of each corner; none if no node is there.
+/// Returns the image of each corner of `first`; none if no corner of `second` is at its moved place.
 std::vector<Index> images_of(const TetMesh& mesh, const Nodes& first, const Nodes& second,
                              const TetMesh::Motion& motion) {
   std::vector<Box> boxes;

@@ -16,8 +16,8 @@ struct PatchPair {
   Motion motion;                     ///< takes the first group to the second
 };
 
-/// Returns the pairs that the options name. Throws OptionError for a pair that cannot be read, a name that no
-/// patch has, and a patch that is not planar, has material on both sides or is in two groups.
+/// Returns the pairs that the options name. Throws OptionError for too many pairs, a pair that cannot be
+/// read, a name that no patch has, and a patch that is not planar, not on the boundary or in two groups.
 std::vector<PatchPair> choose_pairs(const PeriodicOptions& options, const Plc& plc);
 
 }  // namespace collarmesh::periodicity

@@ -13,8 +13,8 @@ namespace collarmesh::periodicity {
 
 namespace {
 
-// A node this near to a place is moved there. The distance is relative to the length of the edges at the
-// node.
+// A node this near to a place is moved there. The distance is relative to the shortest edge of the patch at
+// the node.
 constexpr double near_in_patch = 0.25;
 constexpr double good_patch_removal = 0.3;    // quality that a removal must leave; otherwise the node is kept
                                               // and inserted on the pair's other patch
@@ -152,7 +152,8 @@ Index PatchEditor::find_face(const Point& place) {
   return none;
 }
 
-// Moves the nearest corner of the face at a place to that place.
+// Moves the nearest corner of the face at a place to that place, if it is near enough and the tets stay good
+// enough. Returns the corner, or none.
 Index PatchEditor::move_one_to(const Point& place) {
   const Index face = find_face(place);
   if (face == none) return none;
@@ -197,7 +198,7 @@ Index PatchEditor::insert(const Point& place) {
   return node;
 }
 
-// Removes a node by collapsing an edge onto a neighbour.
+// Removes a node by collapsing an edge onto the best neighbour, if that leaves good tets.
 void PatchEditor::remove(Index node) {
   Cavity cavity = editor_.around_vertex(node);
   Index onto = none;

@@ -25,17 +25,17 @@ class PatchEditor {
   /// Keeps a reference to the editor. `faces` are the patch's faces in the mesh. Cost: linear in these faces.
   PatchEditor(CavityEditor& editor, const Plc& plc, Index patch, std::span<const Index> faces);
 
-  /// Gives the interior of the patch nodes at exactly these places: moves nodes that are near a place,
-  /// inserts new nodes, and removes the rest if that leaves good tets. Returns the node at each place; none
-  /// if it could not be made.
+  /// Makes the nodes inside the patch lie at exactly these places: moves nodes that are near a place, inserts
+  /// new nodes, and removes the rest if that leaves good tets. Returns the node at each place; none if it
+  /// could not be made.
   std::vector<Index> put_nodes(std::span<const Point> places);
-  /// Returns the places of the nodes that could not be removed.
+  /// Returns the places of the nodes inside the patch that `put_nodes` could not remove.
   std::vector<Point> places_of_others() const;
   /// Adds nodes at these places and returns them, as `put_nodes` does; all other nodes stay.
   std::vector<Index> add_nodes(std::span<const Point> places);
   /// Flips edges until the patch has these edges, as long as all new tets have a quality above `least`. The
-  /// ends must be nodes of the patch. If `must`, inserts vertices below the patch to make room. Returns the
-  /// number of missing edges.
+  /// ends must be nodes of the patch. If `must`, also inserts vertices below the patch, so that the new tets
+  /// are positive. Returns the number of missing edges.
   std::size_t make_edges(std::span<const Edge> edges, double least, bool must);
   /// Returns the edges of the patch, the smaller node of each first.
   std::vector<Edge> edges() const;

@@ -75,7 +75,8 @@ void Recut::find_seams(const std::vector<PatchPair>& pairs, const std::vector<Fe
 }
 
 // Chooses the tets to move, by distances along edges and across the other seams. So the new cuts lie halfway
-// between the groups, or nearer to the group whose tets move (Moved).
+// between the groups, or nearer to the group whose tets move (Moved). Moves nothing for a pair if a tet
+// touches both of its groups.
 void Recut::find_shifts(Moved moved) {
   shifts_.assign(mesh_.tets.size(), 0);
   const double much = moved == Moved::first_half ? 1 : 1.7;
@@ -163,7 +164,7 @@ Motion Recut::motion_of(Shift shift) const {
   return motion;
 }
 
-// Returns the place of a vertex. If the vertex is moved onto its image on a seam, that image takes its place.
+// Returns the same place without motions that take its vertex onto its image on a seam: the image's place.
 Recut::Place Recut::on_seam(Place place) const {
   for (std::size_t k = 0; k < seams_.size(); ++k) {
     if ((place.shift >> k & 1U) == 0) continue;
@@ -362,7 +363,7 @@ Index Recut::vertex_back(Place place, Shift shift) const {
 
 namespace {
 
-/// A mesh of numbered vertices, which are created on first use.
+/// A builder of a mesh. It creates a vertex when the vertex's key is first used.
 class Restored {
  public:
   explicit Restored(const TetMesh& like) {

@@ -27,7 +27,7 @@ class Recut {
   /// faces of a third pair at the same places for two of these choices, but not for all three.
   enum class Moved { beside_first, beside_second, first_half };
 
-  /// Keeps all by reference except `moved`. Preconditions: the mesh is of first order, and
+  /// Keeps the mesh and the complex by reference. Preconditions: the mesh is of first order, and
   /// `mesh.periodic` has the pairs of its vertices.
   Recut(const TetMesh& mesh, const Plc& plc, const SurfaceTolerance& tolerance,
         const std::vector<PatchPair>& pairs, const std::vector<FeatureImages>& images, Moved moved);
@@ -35,7 +35,7 @@ class Recut {
   /// Returns the recut mesh; its patches, curves and vertices are those of the tiled complex.
   TetMesh& mesh() { return made_; }
   const TiledComplex& complex() const { return *complex_; }
-  /// Returns the vertices that must stay.
+  /// Returns the vertices at the new cuts, which must stay.
   const std::vector<Index>& fixed() const { return fixed_; }
   /// Returns for each vertex whether its distance from the groups' patches exceeds this number of edges.
   std::vector<bool> farther_than(unsigned edges) const;
@@ -90,7 +90,7 @@ class Recut {
   std::unique_ptr<const TiledComplex> complex_;
   TetMesh made_;
   std::vector<Place> places_;                           // by vertex of the recut mesh
-  std::vector<Point> points_;                           // original points of these places
+  std::vector<Point> points_;                           // points of these vertices before any change
   std::unordered_map<std::uint64_t, Index> vertex_at_;  // by vertex of the mesh and shift
   std::vector<Index> fixed_;
 };

@@ -7,7 +7,7 @@
 
 namespace collarmesh::periodicity {
 
-/// A place of a node, and the length that its distance to other nodes should have.
+/// The place of a node, and the distance that other nodes should have from it.
 struct SpacedPlace {
   Point place;
   double spacing;

@@ -252,7 +252,7 @@ void tetrahedralize(MeshJob& job, Hope hope) {
   }
   result.status = MeshStatus::budget_hit;
   result.message =
-      fmt::format("{} vertices were reached; raise max-vertices, or the sizes for a coarser mesh",
+      fmt::format("the limit of {} vertices is reached; raise max-vertices, or the sizes for a coarser mesh",
                   job.refined_with.max_vertices);
   throw Ended();
 }

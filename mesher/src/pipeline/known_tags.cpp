@@ -42,7 +42,7 @@ void refuse_replaced_patches(const std::map<Tag, double>& sizes, const Plc& plc)
     if (found != sizes.end() && !there)
       throw OptionError(
           fmt::format("patch-size {}={}: patch {} lies on patch {} of another part, and both now have the "
-                      "number {}; use it",
+                      "number {}; use that number",
                       gone, found->second, gone, stays, stays));
   }
 }

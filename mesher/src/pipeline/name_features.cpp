@@ -140,8 +140,8 @@ class Namer {
     for (const auto& [gone, stays] : plc_.cleanup.replaced_tags)
       if (gone == tag)
         return fmt::format(
-            ": patch {} lies on patch {} of another part, and both now have the number {}; use it", gone,
-            stays, stays);
+            ": patch {} lies on patch {} of another part, and both now have the number {}; use that number",
+            gone, stays, stays);
     return {};
   }
 

@@ -9,7 +9,7 @@
 /// Angles between rays and facets at a common point. Directions are unit vectors, angles degrees.
 namespace collarmesh::plc {
 
-/// Returns the angle between two vectors, in [0, 180], accurate near both ends.
+/// Returns the angle between two vectors, in [0, 180], accurate also near 0 and 180.
 double angle_between(const Vector& u, const Vector& v);
 
 /// The planar sector between two rays.

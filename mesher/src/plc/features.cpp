@@ -137,7 +137,7 @@ void fit_plane(ComplexDraft& draft, const std::vector<Index>& triangles, Plc::Pa
     return true;
   };
   if (accept(draft.corner(largest, 0), unit_normal(draft, largest)) || norm(mean) == 0) return;
-  // The mean plane is nearer to all of the triangles than the plane of any single triangle.
+  // A plane with the mean normal may be nearer to all points than the plane of one triangle.
   Extent extent{mean / norm(mean)};
   const Point& base = draft.corner(largest, 0);
   for (const Index p : points) {

@@ -37,7 +37,7 @@ class InterfaceFinder {
   }
 
  private:
-  // Returns the triangles of each cluster that has an edge where several soups meet, by seed.
+  // Returns by seed the triangles of each cluster that has an edge at which several soups meet.
   std::map<Index, std::vector<Index>> clusters_on_common_edges() const {
     std::vector<bool> wanted(draft_.triangles.size(), false);
     for (Index e = 0; e < edges_.size(); ++e) {

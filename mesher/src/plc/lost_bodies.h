@@ -13,8 +13,8 @@ namespace collarmesh::plc {
 /// facets and an extent of at most 100 times `distance`. Cost: that of sorting the points.
 std::vector<Plc::Warning> lost_bodies(std::span<const PolygonSoup> soups, const Plc& plc, double distance);
 
-/// The regions whose volume (within 2%) no region of the repaired complex has, each given by one of its
-/// points.
+/// The regions whose volume (within 2%) no region of the repaired complex has, each given by a
+/// point of its boundary.
 struct LostRegions {
   std::vector<Point> thin;    ///< thin regions, see `lost_regions`
   double thin_volume = 0;     ///< volume of all thin regions

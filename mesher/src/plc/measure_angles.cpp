@@ -143,8 +143,8 @@ class PatchFans {
   std::vector<bool> visited_;  // corners that already are in a fan
 };
 
-// The direction of an edge is not reliable if the edge is shorter than this many planar tolerances; nor is
-// the normal of a triangle that is lower than this.
+// The direction of an edge is unreliable if the edge is shorter than this many planar tolerances; so is the
+// normal of a triangle whose height is smaller.
 constexpr double noise = 10;
 // A patch has a vertex at a point where it folds to less than this angle (degrees).
 constexpr double folded = 90;
@@ -187,7 +187,8 @@ class AngleFinder {
   }
   double noise_length() const { return noise * plc_.planar_tolerance; }
 
-  // Returns the direction of a curve's end, towards the first point of its polyline that is far enough away.
+  // Returns the direction of a curve's end, towards the first point that is farther from it than
+  // `noise_length`.
   Ray make_ray(Index curve, std::vector<Index> points) const {
     std::size_t far = 1;
     while (far + 1 < points.size() && distance(at(points[0]), at(points[far])) <= noise_length()) ++far;
@@ -246,7 +247,8 @@ class AngleFinder {
     return norm(cross(b - a, c - a)) / std::max({distance(a, b), distance(b, c), distance(c, a)});
   }
 
-  // Returns the triangle itself or, if it is a needle, the nearest triangle of its patch that is no needle.
+  // Returns the triangle itself or, if its normal is unreliable, a near triangle of its patch whose normal is
+  // not.
   Index reliable_triangle(Index triangle) const {
     std::vector<Index> seen{triangle};
     for (std::size_t next = 0; next < seen.size() && seen.size() < 64; ++next) {
@@ -342,7 +344,8 @@ class AngleFinder {
 // other: their fan is too flat to fold.
 constexpr double flat_cosine = 0.966;
 
-// Returns points where the normals of some smooth patch's triangles differ by more than 15 degrees.
+// Returns the points where a triangle of a smooth patch turns by more than 15 degrees from the patch's first
+// triangle there.
 std::vector<Index> points_not_flat(std::span<const Point> points, const Plc& plc) {
   struct First {
     Index patch = none;  // the last patch found at the point

@@ -15,7 +15,7 @@ namespace {
 
 using namespace facets;
 
-/// The polygons of a facet, in numbers of merged points.
+/// A facet whose polygons are lists of merged points.
 struct MergedFacet {
   Tag tag = 0;
   std::vector<std::vector<Index>> polygons;

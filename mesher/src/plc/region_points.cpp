@@ -64,8 +64,8 @@ class PointPlacer {
     return squared_norm(cross(draft_.corner(triangle, 1) - a, draft_.corner(triangle, 2) - a));
   }
 
-  /// Finds for each shell the side of its largest triangle, and the signed volume that the shell encloses:
-  /// positive if the shell's space is inside.
+  /// Finds for each shell the side of its largest triangle, and six times the signed volume that the shell
+  /// encloses: positive if the shell's space is inside.
   void find_largest_sides() {
     const auto count = static_cast<Index>(2 * draft_.triangles.size());
     largest_.assign(count, none);

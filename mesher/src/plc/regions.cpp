@@ -138,8 +138,7 @@ class RegionFinder {
 
   bool is_outer(Index shell) { return outer_shell_[components_.find(shell / 2)] == shell; }
 
-  // Numbers the bounded chambers, which are those of inner shells, and collects for each one which soups
-  // claim to have it inside.
+  // Numbers the bounded chambers, one for each inner shell, and finds the soups that claim each of them.
   void find_bounded_chambers() {
     chamber_of_shell_.assign(2 * count_, none);
     for (Index side = 0; side < 2 * count_; ++side) {
@@ -348,10 +347,11 @@ class RegionFinder {
                        "cavity's facets around, or remove it.",
                        description(p)));
     else
-      warn(p.point.point,
-           fmt::format("{} lies in the hole of the hole point {} of {} and has no effect; remove "
-                       "one of them, or close the facets that should part them.",
-                       description(p), text(hole->point.point), draft_.soup_names[hole->soup]));
+      warn(
+          p.point.point,
+          fmt::format("{} lies in the hole that the hole point {} of {} marks, and has no effect; remove one "
+                      "of these points, or close the facets that should separate them.",
+                      description(p), text(hole->point.point), draft_.soup_names[hole->soup]));
   }
 
   std::string description(const PlacedPoint& p) const {

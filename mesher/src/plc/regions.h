@@ -22,7 +22,7 @@ struct Regions {
 /// it lies behind a facet, or if no region encloses it and it is not a cavity that touches the surface around
 /// it. Precondition: triangles meet in common edges and corners only. A region is named after the soup with
 /// the largest part of its boundary. Faults: region and hole points on a facet. Warnings: region and hole
-/// points without effect. The triangles are the first items of the tree, in their order.
+/// points without effect. The first items of `boxes` must be the triangles, in their order.
 Regions find_regions(const facets::ComplexDraft& draft, const facets::EdgeTable& edges, const BoxTree& boxes,
                      std::span<const PolygonSoup> soups, facets::Faults& faults);
 

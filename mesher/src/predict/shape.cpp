@@ -90,8 +90,8 @@ double Shape::wall_width(const Point& p, Index triangle, double widest) const {
 }
 
 Index Shape::region_at(const Point& p, Index nearest) const {
-  // Barycentric coordinates of points that are surely inside a triangle; heights of needles relative to
-  // sides.
+  // Least barycentric coordinate of points that are surely inside a triangle; largest height of a needle,
+  // relative to its longest side.
   constexpr double inside = 1e-6, needle = 1e-4;
   if (nearest == none) return locator_.region_at(p);
   const auto [a, b, c] = corners(nearest);
@@ -101,7 +101,7 @@ Index Shape::region_at(const Point& p, Index nearest) const {
   const auto is_left_of = [&](const Point& from, const Point& to) {
     return dot(cross(to - from, p - from), normal) > inside * squared;
   };
-  // The way to a nearest point inside a triangle meets no other triangle.
+  // If the nearest point is inside a triangle, the segment to it meets no other triangle.
   const bool is_inside =
       squared > needle * needle * side * side && is_left_of(a, b) && is_left_of(b, c) && is_left_of(c, a);
   return is_inside ? plc_.patches[plc_.triangles[nearest].patch].regions[dot(p - a, normal) > 0 ? 1 : 0]

@@ -47,7 +47,7 @@ class Wheel {
     }
   }
 
-  /// Returns the sum of the angles within regions, radians, and the number of their wedges.
+  /// Returns the sum of the angles of the wedges within regions, radians, and the number of these wedges.
   std::pair<double, int> inside() {
     std::ranges::sort(spokes_);
     std::pair<double, int> sum{0, 0};
@@ -65,7 +65,7 @@ class Wheel {
   const Plc& plc_;
   Index from_, to_;
   Vector along_, u_, v_;
-  std::vector<std::pair<double, Index>> spokes_;  // the angle, and the region beyond it
+  std::vector<std::pair<double, Index>> spokes_;  // angle, and region at larger angles
 };
 
 }  // namespace

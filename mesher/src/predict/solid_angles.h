@@ -12,7 +12,7 @@ struct SolidAngles {
   std::vector<double> of_patch, of_curve, of_vertex;
 };
 
-/// Computes solid angles; those of curves at their middles. Cost: linear.
+/// Computes these shares; for a curve, at its middle segment. Cost: linear.
 SolidAngles solid_angles(const Plc& plc);
 
 }  // namespace collarmesh::prediction

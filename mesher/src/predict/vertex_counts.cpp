@@ -19,7 +19,7 @@ constexpr std::size_t most_pieces = 40000, most_cubes = 20000;
 // Limits on the number of pieces of one segment, and of all curves (not counting the first piece of each
 // segment).
 constexpr double most_pieces_of_segment = 1000, most_pieces_of_curves = 40000;
-constexpr double least_share = 0.002;  // smallest size by walls and strips, relative to the target size
+constexpr double least_share = 0.002;  // smallest size that walls and strips ask for, relative to the target
 
 /// Returns a value that rises from 0 to 1 between two bounds.
 double ramp(double x, double from, double to) { return std::clamp((x - from) / (to - from), 0.0, 1.0); }
@@ -71,7 +71,7 @@ class TetCounter::Counter {
     Point centre;
     double half;
     Index region = none;
-    Index nearest = none;  // the triangle nearest to the centre, or to that of the cube before its division
+    Index nearest = none;  // the triangle nearest to the centre of this cube, or of the cube it is part of
   };
 
   bool is_enough() const { return tets_ >= enough_; }
@@ -182,7 +182,7 @@ class TetCounter::Counter {
     add(whole(c, edges) - (has_vertex ? 1 : 0), shape_.angles().of_curve[c]);
   }
 
-  /// Counts the vertices on patches: halves triangles until each piece has one size.
+  /// Counts the vertices on patches: halves triangles until the size varies little in each piece.
   void count_on_patches() {
     for (; !triangles_.empty() && !is_enough(); ++triangles_done_) {
       const Piece piece = triangles_.front();
@@ -236,7 +236,8 @@ class TetCounter::Counter {
     pieces.push_back({piece.triangle, {middle, b, c}});
   }
 
-  /// Counts the vertices of regions: divides the bounding box into cubes until each has one size.
+  /// Counts the vertices of regions: divides the bounding box into cubes until the size varies little in
+  /// each.
   void count_inside() {
     for (; !cubes_.empty() && !is_enough(); ++cubes_done_) {
       Cube cube = cubes_.front();

@@ -17,9 +17,9 @@ struct Model {
   double growth = 2;           ///< growth of edges per unit length, away from short edges
   double asked_growth = 1;     ///< growth per unit length away from curves with sizes of their own
   double chord = 1.15;         ///< deviation of chords, relative to the distance tolerance
-  double aspect = 3;           ///< largest ratio of edges along and across a curved patch
-  double wall = 8.7;           ///< the largest ratio of edges to the width of a wall
-  double strip = 7;            ///< the largest ratio of edges on curves to the width of a strip of surface
+  double aspect = 3;           ///< largest ratio of edge lengths along and across the bend of a patch
+  double wall = 8.7;           ///< largest ratio of edge lengths to the width of a wall
+  double strip = 7;            ///< largest ratio of edge lengths on curves to the width of a strip of surface
   double border_from = 0.4;    ///< least distance of vertices on a patch from its border
   double border_to = 0.8;      ///< distance from the border at which vertices on a patch reach full density
   double depth_from = 0.3;     ///< the same as border_from, for regions

@@ -76,7 +76,7 @@ class BoundaryProjection {
     bool limited;   // stays off the exact geometry because its feature is flat
     bool hopeless;  // the move exceeds `projection::longest_way`
     bool done = false;
-    std::uint32_t tried = 0;  // number of commits after which no place was found
+    std::uint32_t tried = 0;  // number of commits when it was last tried in vain
   };
 
   projection::Bounds bounds(const Plc& plc) const {
@@ -92,8 +92,8 @@ class BoundaryProjection {
     return bounds;
   }
 
-  // Returns the largest distance from its place on the exact geometry at which a vertex is moved there. If
-  // the tolerance is small, the exact geometry may be farther than that from the complex.
+  // Returns the largest distance over which the vertex at p is moved onto the exact geometry. If the
+  // tolerance is small, the exact geometry may be farther than that from the complex.
   double farthest_from(unsigned dimension, Index feature, const Point& p) const {
     if (dimension == 1) return most_off * tolerance_.least_on_curve(plc_.curves[feature]);
     if (!tolerance_.varies()) return most_off * tolerance_.largest();

@@ -13,8 +13,8 @@ namespace collarmesh::projection {
 
 namespace {
 
-// At most `sweeps` sweeps are made, and only as long as every `idle_sweeps` of them reduce the penalty to the
-// share `worthwhile` of its value.
+// Sweeps end after `sweeps` of them, or when `idle_sweeps` in sequence have not reduced the penalty to the
+// share `worthwhile` of its value before them.
 constexpr unsigned sweeps = 50, idle_sweeps = 3;
 constexpr double worthwhile = 0.9;
 // Vertices move by steps that start with this share of their shortest edge and are halved this many times.
@@ -156,7 +156,7 @@ const Relaxation::Wanted& Relaxation::wanted(Index tet) const {
 }
 
 // Returns the sum of the penalties of the tets at the vertex. If the sum is not smaller than `below`, may
-// return any value that is not.
+// return any value that is at least `below`.
 double Relaxation::penalty_around(std::span<const Index> tets, Index vertex, const Point& place,
                                   double below) const {
   double penalty = 0;
@@ -180,11 +180,11 @@ std::optional<Point> Relaxation::on_feature(Index vertex, const Point& wish) con
   return dimension == 3 ? wish : exact_(dimension, feature, wish);
 }
 
-// Moves the vertex to the place where the penalty of the tets around it is least, found by pattern search.
-// Returns whether it moved.
+// Reduces the penalty of the tets around the vertex by moving it, with a pattern search. Returns whether it
+// moved.
 bool Relaxation::improve(Index vertex) {
   const Point start = mesh_.points[vertex];
-  // Most places do not help the worst tets, so evaluate these first.
+  // Evaluate the worst tets first: most places do not help them and are soon rejected.
   worst_first_.clear();
   for (const Index t : tets_at_[vertex])
     worst_first_.emplace_back(-penalty_of(t, corners(t, mesh_.points)), t);

@@ -41,10 +41,10 @@ class Relaxation {
   remeshing::Corners origins_of(Index tet) const { return corners(tet, origins_); }
   /// Returns the initial shortest edge at the vertex.
   double shortest_edge(Index vertex) const;
-  /// Returns whether the tet has positive volume and is within its bound.
+  /// Returns whether the tet has positive volume and misses no bound by more than at the beginning.
   bool good(Index tet) const;
 
-  /// Returns whether a mesh edge of a curve has not turned too far.
+  /// Returns whether a mesh edge of a curve is on course, see `projection::on_course`.
   bool on_course(Index edge) const;
   /// Returns whether all mesh edges of curves at the vertex are on course.
   bool keeps_course(Index vertex);
@@ -70,7 +70,7 @@ class Relaxation {
  private:
   using Corners = std::array<Point, 4>;
 
-  /// The target of a tet: its bound, or its initial shape if that was poorer.
+  /// The values that a tet must reach: its bounds, or its initial values where these are poorer.
   struct Wanted {
     double shape = -1;  // negative until computed
     double ratio = 0;

@@ -7,7 +7,7 @@
 #include "collarmesh/geometry.h"
 #include "common/cell_shapes.h"
 
-/// The rules by which vertices move onto a shape and others make room, on one rank and on many.
+/// Rules for vertices that move onto exact geometry, and for others that make room, on one rank or many.
 namespace collarmesh::projection {
 
 /// Limit of a vertex's move, relative to its shortest edge: a longer move would pass through other tets. Such

@@ -12,7 +12,8 @@ namespace collarmesh {
 
 namespace {
 
-/// Replaces a value by a new one if `comes_first` prefers the new one. Several threads may call it at once.
+/// Replaces the value at `place` by `value` if comes_first(value, old value) is true. Several threads may
+/// call it at once.
 template <class ComesFirst>
 void replace_if(const ComesFirst& comes_first, double& place, double value) {
   const std::atomic_ref<double> shared(place);

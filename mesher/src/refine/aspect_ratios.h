@@ -7,8 +7,8 @@
 namespace collarmesh {
 
 /// Extremes of R_v / r_v over mesh vertices (paper, section 1.2), where R_v is the radius of the smallest
-/// ball around v that contains its Voronoi cell, and r_v that of the largest ball around v inside the cell. 0
-/// if there are no vertices.
+/// ball around v that contains its Voronoi cell, and r_v the radius of the largest ball around v inside the
+/// cell. Both are 0 if no vertex counts.
 struct AspectRatios {
   double smallest = 0, largest = 0;
 };

@@ -13,10 +13,11 @@ namespace collarmesh {
 
 namespace {
 
-// In meshes with fewer vertices than this, too many lie near the borders of blocks, or on curves.
+// A round needs a mesh with at least this many vertices. In smaller ones, too many vertices lie near the
+// borders of blocks or on curves.
 constexpr std::size_t least_vertices = 4096;
-// A round costs some time for every vertex of the mesh, so it needs `least_entries` entries, and at least one
-// for each `vertices_per_entry` vertices.
+// A round costs some time for every vertex of the mesh, so it needs at least `least_entries` queue entries,
+// and at least one for every `vertices_per_entry` vertices.
 constexpr std::size_t least_entries = 2048, vertices_per_entry = 64;
 // A round was not worthwhile if it took more than `entries_per_insertion` entries for each vertex that it
 // inserted. The next round then waits until the mesh has grown by one vertex for each `vertices_per_wait`
@@ -24,7 +25,7 @@ constexpr std::size_t least_entries = 2048, vertices_per_entry = 64;
 constexpr std::size_t entries_per_insertion = 48, vertices_per_wait = 32;
 constexpr std::size_t vertices_per_block = 4000, most_blocks = 256, samples_per_block = 64;
 constexpr std::size_t most_insertions_of_a_round = std::size_t{1} << 18;
-// Each cut divides the points of a sample at a random share between these two.
+// A random share of a sample's points, between these two, lies below each cut.
 constexpr double first_share = 0.4, last_share = 0.6;
 
 bool of_cells(WorkQueue::Priority priority) {
@@ -35,7 +36,8 @@ bool of_triangles(WorkQueue::Priority priority) {
   return priority == WorkQueue::unresolved_triangles || priority == WorkQueue::large_triangles;
 }
 
-// Returns the seed of random offsets at a place. It is the same for the same cell or triangle, in any thread.
+// Returns the seed of the random offsets for the cell or triangle with this centre. It does not depend on the
+// thread.
 std::uint64_t seed_at(const Point& centre, std::uint64_t seed) {
   for (std::size_t axis = 0; axis < 3; ++axis)
     seed = mixed(seed + split_mix_step + std::bit_cast<std::uint64_t>(centre[axis]));
@@ -61,8 +63,8 @@ BlockRefinement::BlockRefinement(const Domain& domain, RefinedMesh& mesh, Surfac
       cells_(cells),
       queue_(queue),
       next_round_(least_vertices) {
-  // No rounds in the paper's profile, or if they would use callers' functions, which need not be thread-safe,
-  // or data at vertices.
+  // There are no rounds in the paper's profile, with data at vertices (sizes or shortest edges), or with a
+  // size field, because the caller's function need not be thread-safe.
   if (sizes.asked().has_field() || sizes.any_at_vertices() || domain_.options.vertex_ratio > 0 ||
       domain_.is_papers())
     next_round_ = std::numeric_limits<std::size_t>::max();
@@ -287,7 +289,7 @@ void BlockRefinement::refine(Block block, const std::vector<WorkQueue::Entry>& e
 }
 
 // Returns whether the round should go on: whether the block's queue has skinny cells, entries of priorities
-// before the round's, or entries of the round's priority in its bucket or in buckets of larger balls.
+// before the round's, or entries of the round's priority whose balls are in the round's bucket or larger.
 bool BlockRefinement::any_left(WorkQueue& queue) const {
   const WorkQueue::Priority priority = queue.first_priority();
   if (priority == WorkQueue::skinny_cells) return true;

@@ -23,12 +23,14 @@ namespace collarmesh {
 
 /// The part that destroys many skinny or large cells, or triangles of the surface, at once, with several
 /// threads.
+///
 /// A vertex may belong to a block if it lies on no vertex or curve of the complex, if no unresolved point and
 /// no centre of a protective ball lies in its Voronoi cell, and if no collar is near. An insertion among such
 /// vertices only concerns the mesh, the surface and the quality of triangles and cells. So a round takes the
 /// first bucket of the queue, divides these vertices into blocks, and refines each block as the loop does: in
-/// the same order of priorities, and with cells that yield to triangles. Entries that do not lie in one block
-/// wait in the queue. The next round has other blocks; the loop handles the few entries that remain.
+/// the same order of priorities, and with cells that yield to triangles. Entries that do not lie within one
+/// block wait in the queue. The next round has other blocks; the loop handles the few entries that remain.
+///
 /// The mesh does not depend on the number of threads: blocks depend only on the mesh, and random offsets only
 /// on the seed and the cell or triangle to destroy. The loop decides when a round may take entries from the
 /// queue.

@@ -14,8 +14,8 @@ constexpr double seconds_between_reports = 0.1;
 
 bool Budget::spent(const Usage& now) {
   constexpr const char* more =
-      "raise {} or size; if this is far more than expected, look at the input there, or wrap the input "
-      "(repair wrap)";
+      "raise {} or size; if the mesh should need far less, look for faults of the input at this vertex, or "
+      "wrap the input (repair wrap)";
   peak_bytes_ = std::max(peak_bytes_, now.bytes);
   if (execution_.cancelled() || !report_progress(now))
     stop(MeshStatus::cancelled, now, "the refinement was stopped", "start it again");

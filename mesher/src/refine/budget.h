@@ -16,7 +16,7 @@ class Budget {
   struct Usage {
     std::size_t vertices, cells, bytes;
     std::size_t planned_vertices;  ///< vertices that will be inserted for sure
-    Point last_vertex;             ///< refinement that does not end stays near this vertex
+    Point last_vertex;             ///< for messages: refinement that does not end stays near it
     double expected_cells;         ///< estimated cells of the complete mesh
   };
 

@@ -63,8 +63,8 @@ void CellQuality::judge(Index cell, WorkQueue& queue, bool leaves_narrow_cells) 
     queue.push(WorkQueue::large_cells, r2, {cell, mesh_.generation(cell)});
 }
 
-// Judges a cell in a collar. There the paper ignores the complex but not quality, so that the mesh is
-// well-spaced everywhere.
+// Judges a cell in a collar, in the paper's profile only. There the paper ignores the complex, but bounds the
+// radius-edge ratio, so that the mesh is well-spaced everywhere.
 void CellQuality::judge_in_collar(Index cell, WorkQueue& queue) const {
   if (!domain_.is_papers()) return;
   const double bound = domain_.options.bounds.radius_edge, r2 = mesh_.squared_radius(cell);
@@ -77,7 +77,7 @@ bool CellQuality::is_narrow(Index cell, Index region) const {
   return gap < INFINITY && gap < Sizing::narrow_gap_per_size * target_size(cell, region);
 }
 
-// Returns the smallest size that applies to the cell, without gradation.
+// Returns the smallest target edge length that applies to the cell, without gradation.
 double CellQuality::target_size(Index cell, Index region) const {
   const Sizing& sizing = sizes_.asked();
   const Point& centre = mesh_.circumcentre(cell);

@@ -7,8 +7,8 @@ namespace collarmesh {
 
 namespace {
 
-// If fewer balls than this are near a vertex, they are tested one by one; otherwise their hierarchy is
-// searched.
+// If fewer balls than this are near a vertex, they are tested one by one; otherwise the hierarchy of all
+// balls is searched.
 constexpr std::size_t most_nearby_balls = 24;
 
 }  // namespace

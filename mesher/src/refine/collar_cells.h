@@ -39,7 +39,7 @@ class CollarCells {
   /// Report new balls: this vertex may be near one, or the circumcentre of this cell lies in one.
   void note_near(Index vertex);
   void note_inside(Index cell);
-  /// Checks again which of the near vertices still are near.
+  /// Removes the marks of vertices that are no longer near a ball.
   void forget_far_vertices();
 
   /// Adds a cell to the collar of a ball, although its circumcentre lies outside all balls.

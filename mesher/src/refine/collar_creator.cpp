@@ -139,8 +139,8 @@ void CollarCreator::create_on_curve(Index curve, BallReason reason) {
   take_up_balls(near, chain.ends, reason);
 }
 
-// Registers the balls placed last. The centres of the first and the last one may be unresolved points
-// already.
+// Registers the balls placed last. `ends` are the unresolved points at the centres of the first and the last
+// of these balls, if there are such points already.
 void CollarCreator::take_up_balls(Index near, const std::array<Index, 2>& ends, BallReason reason) {
   const auto first = static_cast<Index>(ball_points_.size());
   const auto count = static_cast<Index>(collars_.balls().size());
@@ -166,7 +166,7 @@ void CollarCreator::take_up_balls(Index near, const std::array<Index, 2>& ends, 
     for (Index b = first; b < count; ++b) observer_(collars_.balls()[b]);
 }
 
-// Finds the cells and restricted triangles that a new ball removes from the refinement.
+// Reports a new ball to the cells and restricted triangles that refinement ignores because of it.
 void CollarCreator::find_inside(const CollarBall& ball, Index near) {
   const double squared = ball.radius * ball.radius * (1 + 1e-9);
   mesh_.visit_ball(ball.centre, mesh_.nearest_vertex(ball.centre, near), squared, [&](Index vertex) {

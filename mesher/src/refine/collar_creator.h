@@ -28,7 +28,8 @@ namespace collarmesh {
 /// the vertices of balls.
 class CollarCreator {
  public:
-  /// Keeps all by reference. Calls `stopped` with a lower bound on the number of vertices to come.
+  /// Keeps all by reference. Calls `stopped` now and then with a lower bound on the number of vertices to
+  /// come, and stops if it returns true.
   CollarCreator(const Domain& domain, const RefinedMesh& mesh, const SurfaceNodes& nodes,
                 const GradedSizes& sizes, CollarSystem& collars, CollarCells& collar_cells,
                 RestrictedSurface& surface, UnresolvedPoints& points, CurveChains& curves,
@@ -104,10 +105,10 @@ class CollarCreator {
   std::function<bool(std::size_t)> stopped_;
   std::unique_ptr<GapExplorer> gap_;            // created on first use
   std::unique_ptr<CollarPlacement> placement_;  // set only if collars are created in the pass
-  // By curve: how many links, from the start of its chain, are known to be isolated.
+  // By curve: the number of links at the start of its chain that are known to be isolated.
   std::unordered_map<Index, std::size_t> isolated_;
-  std::vector<Index> ball_points_;   // unresolved points at the balls' centres
-  std::vector<BallReason> reasons_;  // reasons of the balls
+  std::vector<Index> ball_points_;   // by ball: the unresolved point at its centre
+  std::vector<BallReason> reasons_;  // by ball
   std::size_t corners_taken_up_ = 0;
   std::function<void(const CollarBall&)> observer_;
   std::vector<Index> scratch_;

@@ -17,7 +17,8 @@ constexpr double on_sphere = 1e-6;
 // corner.
 constexpr double flat_volume = 1e-7;
 
-// Visits the faces around an edge of a cell; all of them unless the edge lies on the hull.
+// Visits the faces around the edge ab, from a given cell at the edge on. If the edge lies on the hull, stops
+// after the first face on the hull.
 template <class Visit>
 void visit_faces_around(const RefinedMesh& mesh, Index cell, Index a, Index b, const Visit& visit) {
   const auto other_corner = [&](Index at, unsigned but) {
@@ -126,7 +127,8 @@ void CollarReview::take_in_flat_cells(std::vector<Index>& cells) {
   sort_uniquely(cells);
 }
 
-// Returns the ball to whose collar a flat cell is added; none if it stays outside.
+// Returns the ball whose collar a cell joins; none if it stays outside. A cell joins if it is flat, its
+// corners lie on features and on the ball's sphere, and it shares a triangle with the collar.
 Index CollarReview::ball_to_take_in(Index cell) {
   if (cells_.inside(cell) || surface_.region(cell) == 0) return none;
   const auto& v = mesh_.corners(cell);
@@ -165,7 +167,7 @@ bool CollarReview::judge_changed_triangles(const std::vector<Index>& cells) {
         continue;
       for (const FaceId outer : {face, other}) {
         auto t = collar_surface_.triangle(outer);
-        if (!t) continue;  // the record of this face is obsolete
+        if (!t) continue;  // a record of this face, if there is one, is obsolete
         if (++looked_at % triangles_between_stops == 0 && stopped_()) return false;
         t->poor_alone = collar_surface_.poor_alone(*t);
         triangles_.insert_or_assign(*t);
@@ -201,10 +203,10 @@ const CollarTriangle* CollarReview::known_triangle(FaceId face) const {
   return triangles_.find(outer, mesh_.generation(cell_of(outer)));
 }
 
-// Returns whether an edge is poor. It must have two triangles, of one ball or of consecutive balls. If they
-// are of one ball, an edge between two regions must not lead from one sheet of a patch to another. If they
-// are of two balls, the book tet on the edge and the two centres must not be inverted and must keep the angle
-// bound.
+// Returns whether an edge is poor. It must have exactly two collar triangles, of one ball or of consecutive
+// balls. If they are of one ball, an edge between two regions must not lead from one sheet of a patch to
+// another. If they are of two balls, the book tet on the edge and the two centres must not be inverted and
+// must keep the angle bound.
 bool CollarReview::poor_edge(const CollarTriangle& t, Index a, Index b) const {
   const CollarTriangle* neighbour = nullptr;
   std::size_t count = 0;
@@ -222,8 +224,8 @@ bool CollarReview::poor_edge(const CollarTriangle& t, Index a, Index b) const {
          collar_surface_.poor_book(t, *neighbour, {std::min(a, b), std::max(a, b)});
 }
 
-// Finds vertices of creases (usually centres of balls) that are vertices of cells outside the collars: the
-// spheres around them have too few mesh vertices yet.
+// Finds mesh vertices on creases (usually centres of balls) that are corners of cells outside the collars:
+// the spheres around them have too few mesh vertices as yet.
 void CollarReview::find_exposed_vertices(const std::vector<Index>& cells) {
   for (const Index cell : cells) {
     if (surface_.region(cell) == 0 || cells_.inside(cell)) continue;

@@ -12,7 +12,8 @@
 namespace collarmesh {
 
 /// The part that reviews the collar surface whenever all other work is done (paper, section 4), and queues
-/// its faults: poor triangles, and vertices of creases that are vertices of cells outside the collar.
+/// its faults: poor triangles, and exposed vertices, that is, mesh vertices on creases that are corners of
+/// cells outside the collars.
 ///
 /// State: the triangles of the collar surface as reviews have judged them, and the cells touched since the
 /// last review. Invariant, once started: a cell near collars is touched if it was created since the last
@@ -24,7 +25,7 @@ namespace collarmesh {
 class CollarReview {
  public:
   /// Keeps references to all arguments. Calls `stopped` now and then. The first review completes the system
-  /// of collars, so that no more balls may come.
+  /// of collars; after it no balls may be added.
   CollarReview(const RefinedMesh& mesh, CollarSystem& collars, CollarCells& cells,
                const RestrictedSurface& surface, const CollarCreator& creator, CollarSurface& collar_surface,
                WorkQueue& queue, std::function<bool()> stopped)
@@ -82,7 +83,7 @@ class CollarReview {
   std::vector<Index> touched_cells_;    // the touched cells, and some that no longer exist or no longer are
                                         // touched
   CollarTriangles triangles_;
-  std::vector<FaceId> poor_;                  // poor triangles to queue, in regions
+  std::vector<FaceId> poor_;                  // poor triangles to queue; their outer cells lie in regions
   std::unordered_map<Index, Index> ball_at_;  // by mesh vertex on a crease: a ball that contains it
   std::vector<Index> exposed_;                // mesh vertices on creases, to queue if exposed
   std::vector<Index> scratch_;

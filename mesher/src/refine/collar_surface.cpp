@@ -11,17 +11,19 @@ namespace collarmesh {
 
 namespace {
 
-// A representation point this close to an arc, relative to the radius of its ball, is moved onto the arc:
-// inserting points of lower dimension first keeps collars small.
+// Patches meet the spheres of balls in arcs. A representation point this close to an arc, relative to the
+// radius of its ball, is moved onto the arc: inserting points of lower dimension first keeps collars small.
 constexpr double arc_reach = 0.7;
-// A representation point is not moved onto an arc if a mesh vertex is already this close to the arc's point,
-// relative to the distance of the representation point from its nearest mesh vertex.
+// The point is not moved if a mesh vertex is already this close to its new place on the arc, relative to the
+// distance between the representation point and the nearest mesh vertex.
 constexpr double arc_clearance = 0.5;
-// Where a smooth patch bends: least distance of an arc's point from mesh vertices, in distance tolerances.
+// Where a smooth patch bends: least distance of a new point on an arc from mesh vertices, in distance
+// tolerances.
 constexpr double bent_clearance = 0.1;
-// Least distance of other points on the collar surface from mesh vertices, in radii of their ball.
+// Least distance of all other new points on the collar surface from mesh vertices, in radii of their ball.
 constexpr double clearance_in_radii = 1e-3;
-// Edges to the centre that leave a patch are divided only if they are longer than this, in radii of the ball.
+// Edges from a patch to a ball's centre that leave the patch are divided only if they are longer than this,
+// in radii of the ball.
 constexpr double divisible_spoke = 1.05;
 
 double radians(double degrees) { return degrees * 3.14159265358979323846 / 180; }
@@ -39,8 +41,8 @@ bool CollarSurface::on_crease(Index vertex) const {
          (f.dimension == 1 && collars_.is_crease_curve(f.index));
 }
 
-// Returns whether a smooth patch may fold here, at a curve inside it. A tet with corners on both sides of a
-// fold is not flat.
+// Returns whether a corner lies on a curve inside a smooth patch, where the patch may fold. A tet with
+// corners on both sides of a fold is not flat.
 bool CollarSurface::at_fold(std::span<const Index> corners) const {
   return std::ranges::any_of(corners, [&](Index v) {
     if (mesh_.feature(v).dimension != 1) return false;
@@ -109,7 +111,7 @@ std::optional<CollarTriangle> CollarSurface::triangle(FaceId outer) {
   return CollarTriangle{outer, generation, parts[0].ball, p + parts[0].from * d, several};
 }
 
-// Returns whether a triangle is poor regardless of its neighbours, apart from bends.
+// Returns whether a triangle is poor for reasons other than its neighbours and bends.
 bool CollarSurface::poorly_represented(const CollarTriangle& t) {
   const Index outer = cell_of(t.face);
   const FaceId inner = mesh_.opposite(t.face);
@@ -148,7 +150,8 @@ bool CollarSurface::far_from_patch(Index patch, const Point& p) const {
 }
 
 // Returns whether a face between the ball's centre and an edge on a smooth patch, or an edge from the centre
-// to a vertex on the patch, is farther from the patch than the tolerance. Records the patch and the place.
+// to a vertex on the patch, leaves the patch by more than the tolerance. Records the patch and the place in
+// the triangle.
 bool CollarSurface::bends(CollarTriangle& t) const {
   if (surface_.region(cell_of(t.face)) == 0) return false;
   const CollarBall& ball = collars_.balls()[t.ball];
@@ -245,9 +248,9 @@ bool CollarSurface::crosses_patch(const CollarBall& ball, Index a, Index b) {
 
 // Returns whether p lies on another sheet of a patch than a triangle does. A smooth patch may pass through a
 // ball's centre in several sheets, so an edge may begin on one and cross another. Balls are made so small
-// that a sheet deviates from its chords by at most h over a radius r (collar/flatness.cpp), and its triangles
-// are tilted by about 4 h / r. So a point of the same sheet is off the triangle's plane by less than 8 h,
-// where h is at most half the distance tolerance, and by less than r / 2.
+// that a sheet deviates from chords as long as the radius r by at most h (collar/flatness.cpp), and its
+// triangles are tilted by about 4 h / r. So a point of the same sheet is off the triangle's plane by less
+// than 8 h, where h is at most half the distance tolerance, and by less than r / 2.
 bool CollarSurface::on_another_sheet(const CollarBall& ball, const Point& p, Index triangle) const {
   const auto [a, b, c] = nodes_.hierarchy().corners(triangle);
   const Index patch = domain_.plc.triangles[triangle].patch;
@@ -307,7 +310,7 @@ std::optional<Candidate> CollarSurface::repair(const CollarTriangle& t) const {
   return Candidate{best, radius * radius, t.representation, feature, start};
 }
 
-// Forgets the flags of faces whose cells have changed.
+// Clears the flags of faces whose cells have changed.
 void CollarSurface::cells_made(const ConflictZone& zone) {
   if (off_.size() == 0) return;
   off_.resize(mesh_.cell_capacity(), 0);

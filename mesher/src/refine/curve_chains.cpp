@@ -48,8 +48,8 @@ void CurveChains::add_chain(Index c) {
   if (!closed) open_creases_.note_unresolved(c);
 }
 
-// Returns the unresolved points of a new chain: its vertices, or the points where the curve leaves their
-// balls, and seeds between them.
+// Returns the unresolved points of a new chain: the curve's end vertices, or the points where the curve
+// leaves their balls, and seeds between them.
 std::vector<CurveChains::End> CurveChains::first_ends(Index c) {
   const Plc::Curve& curve = domain_.plc.curves[c];
   const auto seed = [&](double parameter) {
@@ -109,8 +109,8 @@ void CurveChains::point_resolved(Index point) {
 }
 
 // Requests the balls of a crease whose chain was split and is resolved: queues a piece, because an attempt to
-// split it creates the balls. In the paper's profile the balls must wait until the crease is isolated, so
-// only marks the crease.
+// split it creates the balls. In the paper's profile, only reports that the crease may have become isolated:
+// the balls must wait until it is.
 void CurveChains::chain_resolved(Index curve, Index piece) {
   if (domain_.is_papers())
     open_creases_.touch(curve);
@@ -126,7 +126,8 @@ void CurveChains::resolve_end(Index subsegment, unsigned side) {
 }
 
 // Returns the parameter at which the curve between two parameters meets the bisector plane of a and b. Finds
-// the segment by bisection on the sign of |xa| - |xb| at the polyline's points, then interpolates linearly.
+// the segment by bisection over the polyline's points x, by the sign of |xb| - |xa|, then interpolates
+// linearly.
 double CurveChains::bisecting_parameter(Index c, const Point& a, const Point& b, double from,
                                         double to) const {
   const auto nearer_to_a = [&](const Point& p) { return squared_distance(p, b) - squared_distance(p, a); };
@@ -454,7 +455,8 @@ void CurveChains::clip(Index c, bool at_start, Index near) {
   cut_off(first, side, {none, point, parameter}, near);
 }
 
-// Cuts a chain at a new end: removes the part beyond it, and unresolved points close to it.
+// Cuts a chain at a new end on this side: removes the part between the old end and the new one, and
+// unresolved points close to the new one.
 void CurveChains::cut_off(Index first, unsigned side, const End& end, Index near) {
   const Index curve = subsegments_[first].piece.curve;
   const double from = subsegments_[first].piece.parameters[side];

@@ -8,11 +8,11 @@ namespace collarmesh {
 namespace {
 
 constexpr double floor_per_diagonal = 1e-10;
-// Edges of the complex shorter than this share of the diagonal are tiny. Near them the floor is lower, in
+// Segments of curves shorter than this share of the diagonal are tiny edges. Near them the floor is lower, in
 // proportion to their length, but not below double precision.
 constexpr double tiny_per_diagonal = 1e-5, floor_per_tiny_edge = floor_per_diagonal / tiny_per_diagonal;
 constexpr double precise_per_diagonal = 1e-13, precise_per_coordinate = 500 * 2.2e-16;
-constexpr double reach_of_tiny_edge = 10;  // relative to the edge's length
+constexpr double reach_of_tiny_edge = 10;  // distance up to which it lowers the floor, in its lengths
 // The share of the distance tolerance that refinement aims at, because it tests only a few points of a face.
 constexpr double distance_reserve = 0.75;
 

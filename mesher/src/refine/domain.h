@@ -19,7 +19,8 @@ struct Domain {
   /// Returns whether the mesh must meet exactly the assumptions of the paper's proofs.
   bool is_papers() const { return options.profile == Profile::paper; }
   /// Returns the radius of the smallest ball that may be destroyed at a place; it stops refinement that would
-  /// not terminate. It is `floor` or, near tiny edges of the complex, a share of the shortest of these.
+  /// not terminate. It is `floor` or, near tiny edges of the complex, a share of the length of the shortest
+  /// of these, as far as double precision permits.
   double floor_at(const Point& p) const;
   /// Returns whether a ball around this place is too small to be destroyed.
   bool at_floor(const Point& p, double squared_radius) const {
@@ -42,7 +43,7 @@ struct Domain {
   const PatchPoints patch_points;
   const CurvePaths paths;
   const double diagonal;             ///< diagonal of the complex; lengths in this struct are absolute
-  const SurfaceTolerance tolerance;  ///< allowed distance of the mesh from smooth curves and patches
+  const SurfaceTolerance tolerance;  ///< at smooth curves and patches; a share of the options' tolerance
   const double floor;                ///< least radius of balls that are destroyed, except at tiny edges
   const Box box;                     ///< box around the mesh, well away from the complex; in the frame
 

@@ -16,8 +16,8 @@ namespace collarmesh {
 
 namespace {
 
-/// Returns the order of tets or faces by the smallest number of their points; if it is the same, they keep
-/// their order.
+/// Returns the order of tets or faces by the smallest of their point numbers (`least_points`); those with
+/// equal numbers keep their order.
 std::vector<Index> order_by_least_point(const std::vector<Index>& least_points, std::size_t points) {
   return order_by_group(points, least_points.size(), [&](std::size_t i) { return least_points[i]; });
 }
@@ -208,8 +208,8 @@ class Extraction {
     permute(mesh_.face_tag, order);
   }
 
-  // Removes the feature of vertices on a patch that belong to no face. Such vertices lie in the plane of the
-  // patch, but possibly beyond its border.
+  // Removes the feature of vertices that belong to no face although their feature is a patch. They lie in the
+  // plane of the patch, but possibly beyond its border.
   void forget_features_off_the_surface() {
     std::vector<bool> on_surface(mesh_.points.size(), false);
     for (const auto& face : mesh_.faces)

@@ -14,9 +14,10 @@ namespace {
 // Bytes per entry of a hash set: a node and its slot in the table.
 constexpr std::size_t bytes_per_pair = 32;
 // Largest width of a gap, relative to the radius of the ball of the triangle or subsegment that is split. In
-// wider gaps the distance of samples is already about the width of the gap.
+// wider gaps the distance between samples is already about the width of the gap.
 constexpr double widest_gap_per_radius = 0.9;
-// Least distance of a new vertex from all vertices on its own side of the gap, relative to the same radius.
+// Least distance of a new vertex from all others except the vertex across the gap, relative to the same
+// radius.
 constexpr double least_spacing_per_radius = 0.35;
 // Least cosine between the direction across the gap and the normals of sheets that face each other.
 constexpr double least_facing = 0.97;
@@ -94,8 +95,8 @@ std::optional<double> FacingSheets::parameter_across(const Subsegment& s, const 
 }
 
 // Returns whether a patch faces a vertex. If the vertex lies on another patch, the two must be parallel
-// there; if it lies on a curve, no end of the curve may lie on the patch that faces it. Otherwise the samples
-// of features that meet would approach their common point ever more closely.
+// there; if it lies on a curve, no end of the curve may lie on the patch that faces it. Without these
+// conditions, the samples of features that meet would approach their common point ever more closely.
 bool FacingSheets::faces(Index vertex, Index patch, const Vector& normal) const {
   const Feature& v = mesh_.feature(vertex);
   if (v.dimension == 0) return true;

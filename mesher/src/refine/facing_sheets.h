@@ -11,12 +11,12 @@
 namespace collarmesh {
 
 /// Sheets of the surface that face each other across a gap narrower than the elements around it. If each were
-/// sampled alone, each sample would encroach the other sheet until the distance of samples on both is about
-/// the width of the gap. So a triangle or subsegment that a vertex encroaches from across a gap is split
-/// beneath that vertex. Samples in such pairs leave the balls of the other sheet's triangles and subsegments
-/// empty, however large these balls are; only the quality of cells in a thin part requires smaller balls.
-/// Outside the regions that quality is not needed, so there the edge between the vertices of a pair counts in
-/// no radius-edge ratio. In the paper's profile there are no pairs.
+/// sampled alone, each sample would encroach the other sheet until the distances between samples on both are
+/// about the width of the gap. So a triangle or subsegment that a vertex encroaches from across a gap is
+/// split beneath that vertex. Where samples face each other in pairs, the balls of triangles and subsegments
+/// contain no samples of the other sheet, however large these balls are; only the quality of cells in a thin
+/// part of the domain requires smaller balls. Cells outside the regions need no quality, so there the edge
+/// between the vertices of a pair counts in no radius-edge ratio. In the paper's profile there are no pairs.
 ///
 /// State: the pairs. TriangleQuality and CurveChains query them for their triangles and subsegments,
 /// CellQuality for cells that may stay; the loop records pairs.
@@ -44,8 +44,9 @@ class FacingSheets {
 
   /// Records that these vertices face each other; the second one exists or is inserted next.
   void note_pair(Index a, Index b);
-  /// Returns whether a cell is within the radius-edge bound if edges between vertices of a pair do not count.
-  /// Several threads may call it at once, but not while `note_pair` runs.
+  /// Returns whether a cell is within the radius-edge bound if edges between vertices of a pair do not count;
+  /// always false while there are no pairs. Several threads may call it at once, but not while `note_pair`
+  /// runs.
   bool is_within(Index cell, double bound) const;
   /// Returns the width of the gap that a flat cell spans if all its corners lie on features: between vertices
   /// of pairs, or of features that have no point in common. Infinite if it spans no gap. Several threads may

@@ -137,8 +137,7 @@ void GapExplorer::interview(std::span<const Index> nodes, const Feature& at, con
     ++interviews_;
     const auto& e = nodes_.hierarchy().points(element);
     // The border of a patch is no nearer than the patch, so triangles of patches that count need no test of
-    // their border. An element without a border counts, because the search has skipped the elements without a
-    // border that do not count.
+    // their border. An element without a border always counts here, because the search skips the others.
     const bool is_triangle = element < plc_.triangles.size();
     if (border_of_[element] == none || (is_triangle && counts({2, plc_.triangles[element].patch})))
       return witness(e[0], e[1], e[2]);

@@ -14,8 +14,8 @@ namespace collarmesh {
 
 /// The gap size, found by exploring the mesh (paper, Procedure 4). The search goes breadth first from the
 /// Voronoi cell that contains the point, and computes the distances of the elements that meet each cell. It
-/// ends when all cells that meet the ball around the point through the nearest witness are explored. Features
-/// that contain the point are left out as a whole, however finely they are tessellated.
+/// ends when all cells that are nearer to the point than the nearest element found so far are explored.
+/// Features that contain the point are left out as a whole, however finely they are tessellated.
 class GapExplorer final : public GapSize {
  public:
   /// Keeps all by reference.
@@ -65,9 +65,9 @@ class GapExplorer final : public GapSize {
 
   void find_borders();
   double explore(const Feature& at, const Point& x, double bound);
-  /// Calls witness(a, b, c) with the points of each element below the nodes, or of parts of its border, whose
-  /// features do not contain `at`, if the element's box is nearer to x than the bound. `witness` may lower
-  /// the bound.
+  /// Calls witness(a, b, c) with the points of each element below the nodes, or of each part of its border,
+  /// that lies on a feature that does not contain `at`. Skips elements whose boxes are not nearer to x than
+  /// the bound. `witness` may lower the bound.
   template <class Found>
   void interview(std::span<const Index> nodes, const Feature& at, const Point& x, const double& squared_bound,
                  const Found& witness);

@@ -23,7 +23,7 @@ class GradedSizes {
   GradedSizes(const Domain& domain, const RefinedMesh& mesh, const RestrictedSurface& surface);
 
   const Sizing& asked() const { return sizing_; }
-  /// Returns whether sizes depend on those at vertices.
+  /// Returns whether sizes are kept at mesh vertices, as gradation requires.
   bool any_at_vertices() const { return at_vertex_.size() > 0; }
   /// Returns the target edge length that gradation imposes on a simplex with these corners, whose ball has
   /// this radius; infinite without gradation.

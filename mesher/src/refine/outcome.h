@@ -8,12 +8,12 @@
 namespace collarmesh {
 
 /// The outcome of a refinement. Parts report here what they could not guarantee; the loop queries it.
-/// Invariant: the first of several messages is kept, unless the refinement is stopped.
+/// Invariant: of several messages the first one is kept, but that of `stop` replaces any other.
 class Outcome {
  public:
   static constexpr const char* advice_at_floor =
-      "look for features there that nearly touch or meet at a small angle; a larger crease-angle gives "
-      "such a meeting a collar";
+      "look for features there that nearly touch or meet at a small angle; with a larger "
+      "crease-angle, features that meet there get a collar";
 
   explicit Outcome(const Frame& frame) : frame_(frame) {}
 

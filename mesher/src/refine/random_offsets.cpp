@@ -6,8 +6,8 @@ namespace collarmesh {
 
 namespace {
 
-// Number of offsets that are tried if all of them lead into a collar; the first `offsets_of_full_length` have
-// full length.
+// At most `most_offsets` offsets are tried. The first `offsets_of_full_length` have full length; each later
+// one is half as long as the one before it.
 constexpr int most_offsets = 16, offsets_of_full_length = 8;
 
 }  // namespace

@@ -13,10 +13,11 @@
 namespace collarmesh {
 
 /// The Delaunay mesh and the features that its vertices lie on.
+///
 /// The loop inserts vertices and reports further features of a vertex; BlockRefinement inserts into blocks;
 /// all other parts only read. Searching counts as reading, but it marks cells and vertices, so only one
-/// thread may search. `visit_ball` does not nest. Invariant: every vertex has a feature, of the lowest
-/// dimension known to contain it; dimension 3: none.
+/// thread may search, and the visitor of `visit_ball` must not call `visit_ball`. Invariant: every vertex has
+/// a feature, of the lowest dimension known to contain it; dimension 3: none.
 class RefinedMesh {
  public:
   /// Makes a mesh of the corners of a box. Keeps the complex by reference.

@@ -400,7 +400,8 @@ WorkCounts Refinement::work_counts() const {
   return counts;
 }
 
-// Returns how many vertices of cells in collars belong to no cell outside and no stitched tet.
+// Returns how many vertices of cells in collars belong neither to a cell in a region outside the collars nor
+// to a stitched tet.
 std::size_t Refinement::ripped_out() const {
   enum : std::uint8_t { elsewhere, ripped, kept };
   std::vector<std::uint8_t> where(mesh_.vertex_count(), elsewhere);

@@ -43,13 +43,14 @@ class Refinement {
 
   /// Refines until nothing is left to do, a budget is spent or the caller cancels.
   MeshStatus run();
-  /// Returns whether a run exceeded a budget (`budget_hit`) other than the time limit, and only after it had
-  /// begun to bound the radius-edge ratio in narrow cells, too.
+  /// Returns whether the run ended with `budget_hit`, but not because of the time limit, after it had begun
+  /// to bound the radius-edge ratio in narrow cells, too.
   bool narrow_cells_are_dear() const { return narrow_cells_are_dear_; }
   /// Returns the mesh, after run() returned complete or guarantee_missed.
   Extracted extract() const;
 
-  /// For tests: sets a function to call whenever no skinny cell is left, before anything else is inserted.
+  /// For tests: sets a function to call before each piece of work that the loop takes up because no skinny
+  /// cell is left.
   void observe_quality_phases(std::function<void()> observer) { observer_ = std::move(observer); }
   /// For tests: sets a function to call for every collar ball as soon as refinement creates it.
   void observe_collars(std::function<void(const CollarBall&)> observer) {

@@ -25,7 +25,8 @@ std::vector<FaceId> RestrictedSurface::marked_faces() const {
   });
 }
 
-// Labels a cell from a corner of the box, because the box's corners lie outside every region.
+// Labels a cell by the patches between its circumcentre and a corner of the box, which lies outside every
+// region.
 void RestrictedSurface::label_from_outside(Index cell, Workspace& w) {
   w.crossings_.clear();
   if (!nodes_.hierarchy().empty()) nodes_.crossings(mesh_.point(0), mesh_.circumcentre(cell), w.crossings_);
@@ -175,7 +176,8 @@ bool RestrictedSurface::crosses_as_before(FaceId outer, FaceId face, Index verte
 }
 
 // Returns whether a border face's dual edge has lost its single crossing, which is then beyond the end that
-// was cut off. The labels show that, unless the regions on both sides of the patch are the same.
+// was cut off. The labels show that. If the regions on both sides of the patch are the same, they cannot, and
+// the result is false.
 bool RestrictedSurface::crosses_no_more(FaceId outer, FaceId face) const {
   const RestrictedTriangle& t = triangle(outer);
   const auto& regions = domain_.plc.patches[patch_of(t)].regions;

@@ -22,7 +22,7 @@ struct RestrictedTriangle {
                            ///< largest ball
   bool resolved_vertices;  ///< all three vertices lie on the patch
   bool several_sheets;     ///< the dual edge crosses the surface more than once
-  bool in_collar;          ///< x lies in a collar ball, so refinement ignores it
+  bool in_collar;          ///< x lies in a collar ball, so refinement ignores the triangle
 };
 
 /// Notes on a restricted triangle by the parts that judge it. They last as long as its record; a new record
@@ -89,7 +89,7 @@ class RestrictedSurface {
   /// Scratch data of insertions by one thread, and the records that it may use.
   class Workspace {
     friend class RestrictedSurface;
-    /// A face between new cells whose dual edge crosses patches: dual_crossings_[first, end).
+    /// A face between new cells whose dual edge has the crossings dual_crossings_[first, end).
     struct CrossedFace {
       FaceId face;
       std::size_t first, end;

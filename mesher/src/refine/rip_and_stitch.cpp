@@ -38,7 +38,7 @@ void RipAndStitch::stitch() {
 }
 
 // Adds a tet. If the review has given up, a triangle may have the centre of its own ball as a corner. Makes
-// no cell of such a triangle, so the collar stays open there.
+// no tet of such a triangle, so the collar stays open there.
 void RipAndStitch::add(const Stitched::Tet& tet) {
   const std::array<Index, 4> corners = sorted(tet.corners);
   if (std::ranges::adjacent_find(corners) == corners.end())
@@ -141,8 +141,8 @@ bool RipAndStitch::against_patch(const std::array<Index, 3>& face, Index patch) 
 }
 
 // Returns the patch that contains all three vertices and separates these regions; none if there is none. Two
-// curves that meet at a crease can bound two such patches: then returns the nearer one. If the regions are
-// the same, the face must lie on the patch (lies_on).
+// curves that meet at a crease can bound two such patches: then returns the one nearer to the face. If the
+// regions are the same, the face must lie on the patch (lies_on).
 Index RipAndStitch::patch_between(const std::array<Index, 3>& corners, Index a, Index b) const {
   const auto separates = [&](Index patch) {
     const auto& r = domain_.plc.patches[patch].regions;

@@ -28,7 +28,7 @@ struct Stitched {
   std::vector<Face> faces;
   std::vector<Edge> edges;
   std::vector<Index> open;  ///< mesh vertices of faces on no patch that separate regions or have more than
-                            ///< two tets, and of tets that would have a corner twice
+                            ///< two tets; and a corner of each tet left out because two corners are equal
 };
 
 /// Rip and stitch (paper, Procedure 5). `extract` drops the cells inside the collars, and this class makes
@@ -51,8 +51,8 @@ class RipAndStitch {
         creator_(creator),
         collar_surface_(collar_surface) {}
 
-  /// Makes the tets. Precondition: every point is resolved, unless refinement has given up. If it has, so
-  /// that the collar surface is not well represented, some collars are `open` or have cells other than the
+  /// Makes the tets. Precondition: every point is resolved, unless refinement has given up. If it has, the
+  /// collar surface may not be well represented; then some collars are `open` or have cells other than the
   /// paper's.
   void stitch();
   const Stitched& result() const { return stitched_; }

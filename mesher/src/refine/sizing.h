@@ -20,8 +20,8 @@ namespace collarmesh {
 class Sizing {
  public:
   /// Target edge length per unit of a size given as a length; in meshes of other meshers the median edge is
-  /// even longer in relation to the size. Sizes given as numbers of elements, across a gap or on a circle,
-  /// are used as they are.
+  /// even longer than that. Sizes given as numbers of elements, across a gap or on a circle, are used as they
+  /// are.
   static constexpr double edge_per_size = 1.08;
   /// If the mesh will be coarsened, cells may exceed the radius-edge bound in gaps narrower than this share
   /// of the target edge length: in wider gaps the bound costs little, and improves angles.

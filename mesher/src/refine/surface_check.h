@@ -19,8 +19,8 @@ std::vector<Index> spread_points(std::span<const Index> candidates, const std::v
 /// patch form a manifold that ends at the patch's curves, whether any part of a smooth patch was missed, and
 /// whether cells are flat. Queues every violation found.
 ///
-/// State: the face that each corner and centre of the smooth patches' triangles was near to at the last
-/// check, so that a round only tests what has changed; the number of rounds. The loop calls it.
+/// State: for each corner and centre of the triangles of smooth patches, the mesh face that it was near to at
+/// the last check, so that a round only tests what has changed; the number of rounds. The loop calls it.
 class SurfaceCheck {
  public:
   /// Keeps all by reference.

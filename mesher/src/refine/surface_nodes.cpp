@@ -9,10 +9,10 @@ namespace collarmesh {
 
 namespace {
 
-// The nodes of a vertex are filtered again after this many insertions in its star; at vertices on the surface
-// after more, because insertions there go on until the end. Filtering visits all cells of the star, so in a
-// large star it waits for one insertion for each `cells_per_insertion` cells: otherwise a hub with n cells
-// would cost n^2.
+// The nodes of a vertex are filtered again after the first of these numbers of insertions in its star. If the
+// vertex lies on a feature, the second, larger number applies, because insertions there go on until the end.
+// Filtering visits all cells of the star, so in a large star it waits for one insertion for each
+// `cells_per_insertion` cells: otherwise a hub with n cells would cost n^2.
 constexpr std::size_t insertions_between_refreshes = 16;
 constexpr std::size_t insertions_between_surface_refreshes = 48;
 constexpr std::size_t cells_per_insertion = 4;

@@ -8,8 +8,8 @@
 
 namespace collarmesh {
 
-/// A recorder of the state of the refinement each time the number of vertices has doubled, up to a bound, so
-/// that all steps together take no more than a few times the memory of the largest one.
+/// A recorder of the state of the refinement each time the number of vertices has doubled, up to a bound. All
+/// steps together take no more than a few times the memory of the largest one.
 class TraceRecorder {
  public:
   explicit TraceRecorder(const Refined& parts) : parts_(parts) {}

@@ -151,7 +151,8 @@ double TriangleQuality::target_size(FaceId face, const RestrictedTriangle& t) {
   return std::min(size, sizes_.graded(corners, reach));
 }
 
-// Returns the distance to the surface that faces this one across a region, but at most `widest`.
+// Returns the distance from x to the nearest part of the surface that faces the triangle's patch across a
+// region, but at most `widest`.
 double TriangleQuality::gap_at(const RestrictedTriangle& t, double widest) {
   const auto corners = nodes_.hierarchy().corners(t.triangle);
   Vector normal = cross(corners[1] - corners[0], corners[2] - corners[0]);

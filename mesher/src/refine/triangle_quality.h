@@ -40,8 +40,9 @@ class TriangleQuality {
   /// Returns a candidate that destroys a triangle, if there is one.
   std::optional<Candidate> candidate(FaceId face);
   /// Returns a candidate that destroys a triangle if no vertex of the triangle lies on another sheet and a
-  /// cell beside it is in conflict with the candidate. Otherwise returns nothing: only the loop can decide.
-  /// Several threads may call it at once, each with its own offsets and for triangles in its own block.
+  /// cell beside it is in conflict with the candidate. Otherwise returns nothing; then the loop must handle
+  /// the triangle. Several threads may call it at once, each with its own offsets and for triangles in its
+  /// own block.
   std::optional<Candidate> candidate_beside(FaceId face, RandomOffsets& random) const;
   /// Returns whether the triangle of a queue entry must still be destroyed.
   bool is_due(const WorkQueue::Entry& entry) const;

@@ -63,8 +63,9 @@ class UnresolvedPoints {
     const Unresolved& p = points_[point];
     return p.vertex != none ? p.vertex : objects_[p.object].vertex;
   }
-  /// Returns whether a queue entry with this stamp is current. If it is not because the mesh has become finer
-  /// there since, queues the point again with its new priority, if it is still needed.
+  /// Returns whether a queue entry with this stamp is still due. If the point is still needed but the ball
+  /// around it has become smaller since it was queued, queues it anew with the smaller ball and returns
+  /// false.
   bool is_due(Index point, std::uint32_t stamp);
   /// Queues a point again if it is still needed. For use after another point was inserted in its place.
   void queue_again(Index point) {
@@ -76,9 +77,9 @@ class UnresolvedPoints {
   void resolve(Index point, Index vertex);
 
   /// Returns the unresolved point that a candidate with this zone warps to (paper, Procedure 2). Only points
-  /// on features of lower dimension than the candidate's count, and only within theta times the radius of the
-  /// ball to destroy from its centre. Returns the nearest one among those of the lowest dimension; none if
-  /// there are none.
+  /// on features of lower dimension than the candidate's count, and only if their distance from the centre of
+  /// the ball to destroy is at most theta times its radius. Returns the nearest one among those of the lowest
+  /// dimension; none if there are none.
   Index warp_target(const ConflictZone& zone, const Candidate& candidate) const;
   /// Returns the only unresolved vertex of the complex in the Voronoi cell of this mesh vertex; none if there
   /// are several or none.

@@ -6,8 +6,8 @@ namespace collarmesh {
 
 namespace {
 
-// A hub is a vertex with more curves and patches, or a curve with more patches, than these. The corner that
-// eight boxes share is no hub.
+// A hub is a vertex with more curves and patches together, or a curve with more patches, than these numbers.
+// The corner that eight boxes share is no hub.
 constexpr std::size_t most_at_vertex = 24, most_sheets_at_curve = 8;
 
 }  // namespace

@@ -8,7 +8,8 @@
 namespace collarmesh {
 
 /// A counter of the cost of insertions, on request (MeshOptions::count_work): the cells that one insertion
-/// destroys, the cells per vertex on the way, and the insertions made too early, while a skinny cell waited.
+/// destroys, the ratio of cells to vertices during refinement, and the insertions for other purposes while a
+/// skinny cell waited.
 ///
 /// State: the extremes so far. The loop reports insertions and rounds of blocks.
 class WorkCounter {

@@ -83,7 +83,7 @@ class WorkQueue {
     while (bucket < bucket_count && buckets_[priority][bucket].empty()) ++bucket;
     return bucket;
   }
-  /// Returns whether any entry of a priority is still due. Drops entries that are not.
+  /// Returns whether any entry of a priority is still due. Until it finds one, drops entries that are not.
   template <class IsDue>
   bool any_due(Priority priority, const IsDue& is_due) {
     for (unsigned bucket = first_bucket(priority); bucket < bucket_count; bucket = first_bucket(priority)) {

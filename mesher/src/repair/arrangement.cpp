@@ -131,7 +131,7 @@ class Cutter {
     return true;
   }
 
-  // Computes a piercing point once for all triangles at the edge.
+  // Returns the point where an edge pierces a triangle. Computes it once for all triangles at the edge.
   ExactPoint piercing(const Edge& edge, const facets::Corners& t, Index number) {
     const auto [at, added] = piercings_.try_emplace({edge[0], edge[1], number});
     if (!added) return at->second;
@@ -425,8 +425,8 @@ void note_places(const ComplexDraft& draft, std::span<const Simplex> simplices,
   }
 }
 
-// The simplices of an earlier round, found by their corners. Points never move, so simplices with the same
-// corners are at the same place.
+// A set of simplices of an earlier round, with look-up by corners. Points never move, so simplices with the
+// same corners are at the same place.
 class KnownSimplices {
  public:
   void clear() { corners_.clear(); }
@@ -441,7 +441,7 @@ class KnownSimplices {
   std::vector<Corners> corners_;
 };
 
-// Facets without intersections in the last round. They can only intersect facets created since.
+// Simplices without intersections in the last round. They can only intersect simplices created since.
 class Settled {
  public:
   /// Returns for each simplex whether it existed in the last round and intersected nothing.
@@ -476,7 +476,7 @@ class GrainSnapper {
   // Pauses or resumes snapping after a round that did not help: if snapping undoes cuts, rounds without
   // snapping may help.
   void change() { pausing_ = !pausing_; }
-  /// Resumes snapping. Returns false if it was not paused, or never snaps.
+  /// Resumes snapping. Returns false if it was not paused, or if the reach is 0, so that nothing is snapped.
   bool resume() { return std::exchange(pausing_, false) && reach_ > 0; }
 
   void run() {

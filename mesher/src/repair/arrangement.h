@@ -20,20 +20,20 @@ struct ArrangementReport {
 
 /// The merges of near corners that `arrange` keeps.
 enum class KeptMerges {
-  all,  ///< all; merging pauses or resumes after each round of cutting that does not lower the number of
-        ///< intersections
+  all,  ///< all merges; merging pauses, or resumes, after each round of cutting that does not lower the
+        ///< number of intersections
   where_nothing_meets  ///< only merges at places where no facets intersect afterwards
 };
 
 /// Cuts the triangles and segments of a draft along their intersections until they only meet in common
 /// corners and edges. Points are constructed exactly, then rounded. Corners that come within `grain`
 /// (absolute) of other corners or edges are merged with them; intersections that merges cause are cut in
-/// further rounds. Merging pauses while it keeps the number of intersections from falling. It is then tried
-/// once more at the end, and undone if facets intersect afterwards. Triangles that cover each other become
-/// copies of one triangle: copies stay, because their orientations tell what is inside. But merging also
-/// cancels opposite copies of one soup, unless `cancel_duplicates` is false. Throws WorkStopped; the draft is
-/// then unusable. Pieces keep their triangle's origin, except `Origin::facet`, which is renumbered. Cost: O(n
-/// log n), and for k intersecting pairs O(k log k) exact constructions.
+/// further rounds. Merging pauses while it keeps the number of intersections from falling. If it is paused at
+/// the end, it is tried once more, and undone if facets intersect afterwards. Triangles that cover each other
+/// become copies of one triangle, and copies stay, because their orientations tell what is inside. Only
+/// merging cancels opposite copies of one soup, unless `cancel_duplicates` is false. Throws WorkStopped; the
+/// draft is then unusable. Pieces keep their triangle's origin, except `Origin::facet`, which is renumbered.
+/// Cost: O(n log n), and for k intersecting pairs O(k log k) exact constructions.
 ArrangementReport arrange(facets::ComplexDraft& draft, double grain, Work* work = nullptr,
                           bool cancel_duplicates = true, KeptMerges kept = KeptMerges::all);
 

@@ -12,7 +12,7 @@ namespace {
 
 using namespace facets;
 
-/// A facet perpendicular to the axis.
+/// A facet perpendicular to the axis, with its lowest and highest coordinate along the axis.
 struct FlatFacet {
   double low, high, area;
   Index triangle;

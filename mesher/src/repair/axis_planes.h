@@ -10,7 +10,7 @@ namespace collarmesh::repairing {
 /// The result of `flatten_axis_planes`.
 struct FlattenReport {
   std::size_t moved_points = 0;
-  double largest_distance = 0;  ///< largest displacement of a point
+  double largest_distance = 0;  ///< largest displacement of a point, absolute
   std::vector<Point> places;
 };
 

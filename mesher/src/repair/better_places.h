@@ -15,9 +15,9 @@ struct BetterPlaces {
 };
 
 /// Combines two valid states of a draft: returns the later one, but restores the places (see `Changes`) that
-/// had less trouble before, and places whose facets would intersect those of restored places. The troubles
-/// are those of the complexes of both states. Each is charged to the place of the nearest changed triangle,
-/// within `reach` (absolute). Precondition: as for `Changes`. Cost: O(n log n).
+/// had less trouble before, and places whose facets would intersect those of restored places. The arguments
+/// give the troubles of the complexes built from both states. Each trouble counts for the place of the
+/// nearest changed triangle within `reach` (absolute). Precondition: as for `Changes`. Cost: O(n log n).
 BetterPlaces better_places(const facets::ComplexDraft& before, const std::vector<Trouble>& troubles_before,
                            const facets::ComplexDraft& after, const std::vector<Trouble>& troubles_after,
                            double reach);

@@ -52,8 +52,8 @@ bool in_order(const Segment& s, const Segment& t) {
   return key(s) < key(t);
 }
 
-// Returns the places whose triangles meet other triangles. Triangles outside of all places are not compared
-// with each other.
+// Returns the places whose triangles intersect other triangles, some several times. Unchanged triangles are
+// not compared with each other.
 std::vector<Index> places_that_meet(ComplexDraft draft, const std::vector<Index>& place) {
   for (Index t = 0; t < draft.origins.size(); ++t) draft.origins[t].facet = t;
   const EdgeTable edges(draft.triangles, draft.points.size());
@@ -76,7 +76,7 @@ Changes::Changes(const ComplexDraft& before, const ComplexDraft& after) : before
   find_places();
 }
 
-// Marks triangles that both states have; all others get the temporary mark 0.
+// Gives triangles that both states have the place `none`; all others get the temporary place 0.
 void Changes::match() {
   of_gone_.assign(before_.triangles.size(), none);
   of_come_.assign(after_.triangles.size(), none);

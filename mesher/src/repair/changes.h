@@ -40,9 +40,9 @@ class Changes {
 };
 
 /// Returns the later state without the changes at the places in `taken_back` and at all other places whose
-/// facets would meet other facets outside of common edges and corners; adds these places to `taken_back`.
-/// Facets that already meet in the earlier state may still meet. Cost: O(n log n) for each of at most a few
-/// rounds.
+/// facets would meet other facets outside of common edges and corners; adds those other places to
+/// `taken_back`. Facets that already meet in the earlier state may still meet. Takes back all places if more
+/// than a few rounds are needed. Cost: O(n log n) for each round.
 facets::ComplexDraft without_what_meets(const Changes& changes, std::vector<bool>& taken_back);
 
 }  // namespace collarmesh::repairing

@@ -90,9 +90,9 @@ class ChangingTriangles {
   }
 
   /// Calls visit(p, edge) for each corner p and each edge that does not end at p, if their enlarged boxes
-  /// meet and a changed triangle has the corner or the edge. Visits some pairs several times. Corners and
-  /// edges may no longer exist. Each pair costs a unit of `work`. Cost: as for `for_each_near_pair`, however
-  /// many triangles are at a corner.
+  /// meet and a changed triangle has the corner or the edge. Visits some pairs several times, and some
+  /// corners and edges that no longer exist. Each pair costs a unit of `work`. Cost: as for
+  /// `for_each_near_pair`, however many triangles are at a corner.
   template <class Visit>
   void for_each_corner_near_edge(const std::vector<Index>& changed, const Visit& visit) {
     const std::vector<Index> corners = corners_of(changed);

@@ -18,7 +18,7 @@ std::string first_place(const RepairPlaces& places) {
 
 const char* plural(std::size_t count) { return count == 1 ? "" : "s"; }
 
-/// Describes the distances of the facets from the input.
+/// Describes the distances between the repaired facets and the input.
 std::string moved_text(const RepairReport& r) {
   if (r.largest_distance == 0 && r.largest_distance_of_input == 0) return "repair moved nothing";
   return fmt::format(
@@ -39,7 +39,7 @@ const char* kind_name(SmallFeature::Kind kind) {
   return "tip";
 }
 
-/// Lists the small features by kind, and the place of each.
+/// Lists the first few small features, with kind, tag, size and place.
 std::string small_features_text(const RepairReport& r) {
   constexpr std::size_t most_listed = 10;
   std::string text =
@@ -92,8 +92,8 @@ std::vector<std::string> describe(const RepairReport& r) {
         r.flakes.count, plural(r.flakes.count), r.tolerance, r.flakes.size, first_place(r.flakes)));
   if (r.second_sides > 0)
     lines.push_back(
-        fmt::format("{} triangle{} dropped that coincided with others of opposite orientation: the surface "
-                    "was double everywhere, and one layer is kept",
+        fmt::format("{} triangle{} dropped that coincided with others of opposite orientation: the whole "
+                    "surface had two coinciding layers, and one of them is kept",
                     r.second_sides, plural(r.second_sides)));
   if (r.merged.count > 0)
     lines.push_back(
@@ -101,7 +101,8 @@ std::vector<std::string> describe(const RepairReport& r) {
                     r.merged.count, plural(r.merged.count), r.merged.size, first_place(r.merged)));
   if (r.dropped.count > 0)
     lines.push_back(fmt::format(
-        "{} triangle{} of sheets without thickness outside of all solids removed, {:.2g}% of the area{}",
+        "{} triangle{} of sheets that enclose nothing and lie outside of all solids removed, {:.2g}% of the "
+        "area{}",
         r.dropped.count, plural(r.dropped.count), 100 * r.dropped.size, first_place(r.dropped)));
   if (r.collapsed.count > 0)
     lines.push_back(fmt::format(
@@ -110,8 +111,8 @@ std::vector<std::string> describe(const RepairReport& r) {
         first_place(r.collapsed)));
   if (r.thin_chambers.count > 0)
     lines.push_back(fmt::format(
-        "{} chamber{} between nearly coincident facets, thinner than the tolerance of {:.3g}, added to the "
-        "regions around {}, a volume of {:.3g}{}",
+        "{} space{} between nearly coincident facets, thinner than the tolerance of {:.3g}, became part of "
+        "the regions around {}, with a volume of {:.3g}{}",
         r.thin_chambers.count, plural(r.thin_chambers.count), r.tolerance,
         r.thin_chambers.count == 1 ? "it" : "them", r.thin_chambers.size, first_place(r.thin_chambers)));
   if (r.vanished.count > 0)

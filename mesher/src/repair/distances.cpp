@@ -47,7 +47,7 @@ unsigned steps(double length, double spacing) {
 }
 
 // Visits a triangle's corners, its centroid, and points on lines parallel to its longest side. Lines and
-// points are no farther apart than the spacing.
+// points are no farther apart than the spacing, unless that takes more than 200 steps.
 template <class Visit>
 void for_each_sample(const CornerPoints& t, double spacing, const Visit& visit) {
   unsigned first = 0;
@@ -73,9 +73,9 @@ double diagonal_of(std::span<const CornerPoints> triangles) {
   return box.diagonal();
 }
 
-/// A search for the sample that is farthest from a surface among those outside. Winding numbers cost far more
-/// than distances, so they are only computed for the farthest of many samples. A sample inside has a ball
-/// around it, up to the surface, in which all other samples are inside, too.
+/// A search for the sample that is farthest from a surface, among the samples that it does not enclose.
+/// Winding numbers cost far more than distances, so they are only computed for the farthest of many samples.
+/// If a sample is inside, so is every sample that is nearer to it than the surface.
 class FarthestOutside {
  public:
   explicit FarthestOutside(const WindingNumber& winding) : winding_(winding) {}

@@ -13,16 +13,16 @@ using CornerPoints = std::array<Point, 3>;
 /// The distances between a repaired surface and its input, absolute.
 struct RepairDistances {
   double of_repaired = 0;  ///< largest distance of a point of the repaired surface from the input
-  double of_input = 0;  ///< largest distance of the input, except parts that the repaired surface encloses,
-                        ///< from the repaired surface
+  double of_input = 0;  ///< largest distance of a point of the input from the repaired surface; points that
+                        ///< the repaired surface encloses do not count
   Point farthest_of_input;  ///< a point of the input at the distance `of_input`
 };
 
 /// Measures both distances, at the triangles' corners and at further points no farther apart than 1/50 of the
-/// diagonal. Skips triangles that both surfaces have. `filled` are further triangles of the repaired surface:
-/// they are far from the input on purpose, so their distances do not count. Leaves out parts of the input
-/// that the repaired surface encloses (winding number above 1/2), because repair removes walls inside solids
-/// on purpose. Cost: O(n log n).
+/// diagonal of the input's bounding box. Skips triangles that both surfaces have. `filled` are further
+/// triangles of the repaired surface, which close holes: their own distances from the input do not count.
+/// Leaves out parts of the input that the repaired surface encloses (winding number above 1/2), because
+/// repair removes walls inside solids on purpose. Cost: O(n log n).
 RepairDistances measure_distances(std::span<const CornerPoints> input, std::span<const CornerPoints> repaired,
                                   std::span<const CornerPoints> filled);
 

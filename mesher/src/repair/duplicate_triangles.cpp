@@ -32,8 +32,8 @@ std::vector<Index> all_triangles(const ComplexDraft& draft) {
   return all;
 }
 
-// Visits each group of two or more of these triangles that have the same corners and are of one soup. Even
-// duplicates come first, then by number.
+// Visits each group of two or more of these triangles that have the same corners and are of one soup. In a
+// group, even duplicates come before odd ones, and each kind is sorted by number.
 template <class Visit>
 void for_each_group(const ComplexDraft& draft, const std::vector<Index>& triangles, const Visit& visit) {
   struct Key {

@@ -19,8 +19,8 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 constexpr std::size_t most_edges_for_cubic_time = 200;
 constexpr std::size_t work_of_an_edge = 1000;  // work of an edge around a hole, in units of `Work`
 
-// The directed edges, by soup, that lack a partner. The missing surface would use them in the opposite
-// direction.
+// The directed edges, by soup, that more triangles of the soup use than the opposite edges. The missing
+// surface would use them in the opposite direction.
 struct OpenEdges {
   std::map<Index, std::vector<std::array<Index, 3>>> of_soup;  // from, to, a triangle there
 };

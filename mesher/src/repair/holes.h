@@ -10,10 +10,10 @@
 namespace collarmesh::repairing {
 
 /// Closes the holes of each surface: closed curves of edges that only one triangle has. Fills them with
-/// triangles between their points, as flat as possible: the largest angle between the normals of neighbouring
-/// triangles counts first, then the total area (CGAL's triangulation of holes). Each hole gets its own tag,
-/// from `first_tag` on. A curve counts as the border of an open sheet, not as a hole, if its filling would
-/// need more than `largest_share` of the area of the surface around it. Neither holes nor tags depend on the
+/// triangles between their points. Minimizes first the largest angle between the normals of neighbouring
+/// triangles, then the total area (CGAL's triangulation of holes). Each hole gets its own tag, from
+/// `first_tag` on. A curve counts as the border of an open sheet, not as a hole, if the area of its filling
+/// would exceed `largest_share` of the area of the surface around it. Neither holes nor tags depend on the
 /// order of points and facets. Throws WorkStopped; the draft is then unusable. Cost: for a hole of k edges
 /// O(k^2) in practice.
 std::vector<FilledHole> fill_holes(facets::ComplexDraft& draft, Tag first_tag, Work* work = nullptr,

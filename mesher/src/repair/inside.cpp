@@ -152,7 +152,8 @@ class BoundaryKeeper {
     for (Index s = 0; s < sheets_.size(); ++s) tangled_[s] = tangled[sets.find(s)];
   }
 
-  // Finds patches: sets of sheets connected by edges that exactly two sheets share.
+  // Finds patches (sets of sheets connected by edges that exactly two sheets share), shells, and the largest
+  // triangles of both.
   void find_patches() {
     DisjointSets sets(sheets_.size());
     for (Index e = 0; e < edges_.size(); ++e)
@@ -217,8 +218,8 @@ class BoundaryKeeper {
 
   // Removes open sheets: patches at edges where the soup is open. Such a patch bounds nothing if the winding
   // number at the patch, computed without the patch, is nearly an integer; at a boundary it would be the mean
-  // of the numbers inside and outside. Starts with the smallest patch: in a box with a wall inside, a half of
-  // the box might be removed rather than the wall, because the wall closes the other half.
+  // of the numbers inside and outside. Starts with the smallest patch. Otherwise, in a box with a wall
+  // inside, half of the box might be removed and the wall kept, because the wall closes the other half.
   void remove_open_sheets(Index soup, std::vector<int>& weights) {
     constexpr std::size_t most = 100;
     for (std::size_t count = 0; count < most; ++count) {
@@ -297,7 +298,7 @@ class BoundaryKeeper {
   struct ThinChamber {
     Point origin;
     double volume = 0, area = 0;
-    std::vector<std::pair<Index, double>> neighbours;  // by triangle: the shell beyond it, and its area
+    std::vector<std::pair<Index, double>> neighbours;  // for each triangle: the shell beyond it, and its area
   };
 
   std::map<Index, ThinChamber> thin_chambers() const {

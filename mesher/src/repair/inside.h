@@ -9,8 +9,8 @@ namespace collarmesh::repairing {
 
 /// Returns true only if the triangles enclose nothing, whatever their orientation. Repeatedly removes
 /// triangles with an edge that no other triangle has. Closed surfaces have no such edge, so if no triangle is
-/// left, they enclose nothing. May return false for triangles that enclose nothing. Precondition: they only
-/// meet in common edges and corners, or are copies of each other. Cost: O(n).
+/// left, they enclose nothing. May return false for triangles that enclose nothing. Precondition: triangles
+/// only meet in common edges and corners, or are copies of each other. Cost: O(n).
 bool peels_away(const facets::ComplexDraft& draft);
 
 /// The result of `turn_components`.
@@ -21,8 +21,8 @@ struct TurnReport {
 
 /// Reverses closed components whose orientation contradicts the rest of their soup: components that are
 /// oriented inwards but lie inside nothing, and components inside a reversed one. A component is connected by
-/// edges at which exactly two triangles of one soup meet with consistent orientation. Complexes stay. Cost:
-/// O(n log n).
+/// edges at which exactly two triangles of one soup meet with consistent orientation. Soups that are
+/// complexes are not changed. Cost: O(n log n).
 TurnReport turn_components(facets::ComplexDraft& draft);
 
 /// The result of `drop_flakes`.
@@ -31,14 +31,14 @@ struct FlakeReport {
   std::vector<Point> places;  ///< a place in each of them
 };
 
-/// Drops closed components thinner than `thickness` (absolute: twice the volume divided by the area) that
-/// have at most 1/1000 of the total volume. Components are those of `turn_components`; components of
-/// complexes stay. Drops nothing if nothing would be left. Cost: O(n log n).
+/// Drops closed components thinner than `thickness` (absolute) that have at most 1/1000 of the total volume.
+/// A component's thickness is twice its volume divided by its area. Components are defined at
+/// `turn_components`; those of complexes stay. Drops nothing if nothing would be left. Cost: O(n log n).
 FlakeReport drop_flakes(facets::ComplexDraft& draft, double thickness);
 
 /// The result of `keep_boundaries`.
 struct InsideReport {
-  std::size_t removed_triangles = 0;  ///< triangles with the same solid, or none, on both sides
+  std::size_t removed_triangles = 0;  ///< triangles with the same solid, or with none, on both sides
   double removed_area = 0;
   std::size_t internal_facets = 0;  ///< triangles of open sheets inside a solid, which stay
   std::size_t dropped_sheets = 0;   ///< triangles of open sheets outside of all solids
@@ -49,14 +49,15 @@ struct InsideReport {
   std::vector<Point> chamber_places;  ///< a place in each of them
 };
 
-/// Keeps the triangles of a clean arrangement that bound a solid. A place is inside a soup if the winding
-/// number of its surface is above 1/2 there; if it is inside several soups, the first one counts. Each soup
-/// then has the boundary of its part of space, oriented outwards; triangles between two soups have a copy for
-/// each. Components stay as they are if each of their edges has two triangles of one soup with consistent
-/// orientation; so do the facets of complexes. A chamber is a part of space that triangles separate from the
-/// rest. A chamber thinner than `thickness` (absolute: twice its volume divided by its area), as between
-/// sheets that nearly coincide, becomes part of the neighbour with the largest common area. Precondition:
-/// triangles only meet in common edges and corners, or are copies of each other. Cost: O(n log n).
+/// Keeps the triangles of a clean arrangement that bound a solid, and open sheets inside solids. A place is
+/// inside a soup if the winding number of the soup's surface is above 1/2 there; a place inside several soups
+/// belongs to the first one. Afterwards, each soup has the boundary of its part of space, oriented outwards;
+/// triangles between two soups have a copy for each. The facets of complexes stay as they are, and so do
+/// components in which each edge has two triangles of one soup with consistent orientation. A chamber is a
+/// part of space that triangles separate from the rest; its thickness is twice its volume divided by its
+/// area. Chambers thinner than `thickness` (absolute), such as those between sheets that nearly coincide,
+/// become part of the neighbour with the largest common area. Precondition: triangles only meet in common
+/// edges and corners, or are copies of each other. Cost: O(n log n).
 InsideReport keep_boundaries(facets::ComplexDraft& draft, double thickness);
 
 }  // namespace collarmesh::repairing

@@ -19,9 +19,9 @@ struct Trouble {
   double cost;  ///< without a unit; to be compared with other costs
 };
 
-/// Returns features below a tolerance (absolute) and creases of less than a degree, which cost more the
-/// sharper they are. Includes only as many pairs of near features as `Faults` keeps. Cost: O(n log n + k) for
-/// k pairs of near neighbours.
+/// Returns a trouble for each feature below a tolerance (absolute) and each crease with an angle below one
+/// degree; the sharper a crease, the higher its cost. Includes only as many pairs of near features as
+/// `Faults` keeps. Cost: O(n log n + k) for k pairs of near neighbours.
 std::vector<Trouble> find_troubles(const Plc& plc, double tolerance);
 
 }  // namespace collarmesh::repairing

@@ -10,7 +10,7 @@ PointGrid::PointGrid(const std::vector<Point>& points, double reach) : points_(p
 }
 
 std::int64_t PointGrid::cell(double x) const {
-  // This many cells away from 0, different doubles are farther apart than the reach.
+  // Clamping does no harm: this many cells away from 0, different doubles are farther apart than the reach.
   constexpr double most = 0x1p62;
   return static_cast<std::int64_t>(std::clamp(std::floor(x / (cells_by_reach * reach_)), -most, most));
 }

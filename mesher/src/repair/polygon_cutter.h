@@ -13,7 +13,7 @@ namespace collarmesh::repairing {
 using Edge = std::array<Index, 2>;
 inline Edge edge_key(Index a, Index b) { return a < b ? Edge{a, b} : Edge{b, a}; }
 
-/// The points and edges along which a polygon is cut.
+/// A polygon, and the points and edges that its triangulation must have.
 struct PolygonCuts {
   std::vector<Index> border;  ///< corners of the polygon
   std::vector<Index> inside;  ///< points inside the polygon

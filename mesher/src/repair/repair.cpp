@@ -46,10 +46,11 @@ using namespace plc;
 using namespace repairing;
 
 constexpr std::size_t most_rounds = 6;
-// Gaps between borders that are wider than the tolerance are stitched, too, but only up to 100 tolerances and
-// up to this share of the diagonal: wider gaps are taken as intended.
+// Borders with a gap wider than the tolerance are stitched, too, but only up to 100 tolerances and up to this
+// share of the diagonal. Wider gaps are taken as intended.
 constexpr double widest_stitch = 1e-3;
-// If more than this share of the area is in open sheets, which are dropped, soups count as enclosing nothing.
+// If open sheets, which are dropped, have more than this share of the area, the soups count as enclosing
+// nothing.
 constexpr double most_in_open_sheets = 0.5;
 constexpr double grain = 1e-3;  // merging distance of the arrangement, relative to the tolerance
 
@@ -137,8 +138,8 @@ class Repairer {
   bool encloses_nothing() const { return encloses_nothing_; }
 
   /// Measures how much of the volume that the input encloses is lost, for surfaces that are closed or nearly
-  /// so. Measures nothing for complexes, and if all parts of the input outside the result are near the
-  /// result, because little volume can be lost then.
+  /// so. Returns zeros if a soup is a complex. Also returns zeros if all parts of the input outside the
+  /// result are near the result, because little volume can be lost then.
   KeptVolume kept_volume(const RepairReport& report) const {
     constexpr double far = 10;  // in tolerances
     const bool any_complex = std::ranges::any_of(draft_.soup_is_complex, [](bool b) { return b; });
@@ -254,7 +255,7 @@ class Repairer {
     add_places(report_.turned, turned.turned_components, 0, turned.places);
   }
 
-  // Returns a tag above all tags of the input, including the numbers of CAD faces, which are their tags.
+  // Returns a tag above all facet tags of the input. The numbers of CAD faces are such tags.
   Tag next_tag() const {
     Tag tag = 0;
     for (const PolygonSoup& soup : soups_)
@@ -262,7 +263,7 @@ class Repairer {
     return tag + 1;
   }
 
-  /// The state of the draft. Once it is clean (without intersections), steps must keep it clean.
+  /// A saved draft and report, for undoing steps that fail.
   struct State {
     ComplexDraft draft;
     RepairReport report;
@@ -281,7 +282,7 @@ class Repairer {
     const State valid = state();
     try_on([&] { snap_in_rounds(); });
     // Cutting leaves corners that almost touch other facets. Collapse features once more within a small share
-    // of the tolerance: so few corners are that near that this hardly leads to new cuts.
+    // of the tolerance. Few corners are that near, so this rarely leads to new cuts.
     try_on([&] {
       const State clean = state();
       if (!collapse(grain * tolerance_).changed() || !cut_and_keep()) restore(clean);
@@ -289,8 +290,8 @@ class Repairer {
     keep_better_places(valid);
   }
 
-  // Moves facets perpendicular to an axis that nearly coincide onto one plane. Reports moves larger than
-  // rounding.
+  // Moves facets onto one plane if they are perpendicular to an axis and nearly coincide. Reports moves
+  // larger than rounding.
   void flatten() {
     const FlattenReport flattened = flatten_axis_planes(draft_, tolerance_);
     constexpr double rounding = 1e-6;  // in tolerances
@@ -374,8 +375,8 @@ class Repairer {
   }
 
   // Cuts facets, some of which may nearly coincide. If rounding their cuts makes ever more intersections,
-  // keeps fewer merges of near corners; if that does not help, first snaps the facets together, within the
-  // smallest distance that helps. Returns whether the draft is clean.
+  // cuts them again with fewer merges of near corners. If that fails, too, snaps the facets together before
+  // cutting, within the smallest distance that helps. Returns whether the draft is clean.
   bool cut_what_nearly_coincides() {
     const ComplexDraft before = draft_;
     const RepairReport report_before = report_;
@@ -427,8 +428,8 @@ class Repairer {
     return true;
   }
 
-  // Returns the tags of facets that no facet has after the repair. With `only_groups`, leaves out tags of CAD
-  // faces, which are numbers and not groups.
+  // Returns the facet tags of the input that no facet has after the repair. With `only_groups`, leaves out
+  // tags of CAD faces, which are numbers and not groups.
   std::vector<Tag> lost_tags(const std::vector<PolygonSoup>& repaired, bool only_groups) const {
     std::set<Tag> before, after;
     for (const PolygonSoup& soup : soups_)
@@ -477,8 +478,7 @@ RepairedPlc with_lost_regions(RepairedPlc complex, std::span<const PolygonSoup> 
   return complex;
 }
 
-// Returns a warning for each tag of lines that no curve of the complex has. Considers only soups without
-// facets.
+// Returns a warning for each line tag in soups without facets that no curve of the complex has.
 std::vector<Plc::Warning> lost_lines(std::span<const PolygonSoup> soups, const Plc& plc) {
   std::map<Tag, Point> lost;
   for (const PolygonSoup& soup : soups)
@@ -502,7 +502,7 @@ void judge_volume(const KeptVolume& kept, Plc& plc) {
   constexpr double most = 0.5, told = 0.05;
   if (kept.lost > most * kept.input)
     throw LostVolume(
-        fmt::format("Its repair would lose {:.0f}% of the volume that the surface encloses (about {:.3g} in "
+        fmt::format("Repair would lose {:.0f}% of the volume that the surface encloses (about {:.3g} in "
                     "all), for example at {}.",
                     100 * kept.lost / kept.input, kept.input, text(kept.where)));
   if (kept.lost > told * kept.input)
@@ -559,7 +559,7 @@ PlcError given_up(const PlcError& error, const RepairOptions& options) {
           error.faults};
 }
 
-// Returns the size below which features are collapsed, absolute; 0: none are.
+// Returns the size below which features are collapsed, absolute; 0: no feature is collapsed.
 double feature_size_of(const Plc& plc, const RepairOptions& options) {
   constexpr double sizes_per_diagonal = 20, most_of_diagonal = 1e-3;
   if (!options.target_size || options.mode == RepairMode::off || plc.regions.size() < 2) return 0;
@@ -676,11 +676,11 @@ RepairedPlc remove_noise(Plc plc, std::span<const PolygonSoup> soups, const PlcO
   }
   plc.warnings.push_back(
       {fmt::format("Features below the repair tolerance of {:.3g} stay, the first one at {}: removing them "
-                   "{}. They cost elements and time; another --repair-tolerance may help.",
+                   "{}. Such features cost elements and time; another --repair-tolerance may help.",
                    tolerance, text(*noise),
                    result.report.gave_up ? "takes too long"
                    : changes             ? "would make the complex invalid"
-                                         : "would make worse ones"),
+                                         : "would create worse features"),
        *noise});
   return with_lost_regions({std::move(plc), {}, {}}, soups);
 }
@@ -730,7 +730,7 @@ RepairedPlc build_repaired_plc(std::span<const PolygonSoup> soups, const PlcOpti
     }
   }
   if (are_sheets) return build_cut_sheets(soups, options, repair_options, execution, *first);
-  // As a last resort, and only in this mode, wrap.
+  // As a last resort, wrap, if the mode permits it.
   if (repair_options.mode == RepairMode::wrap)
     if (auto wrapped = build_wrapped_plc(soups, options, repair_options)) return *std::move(wrapped);
   if (lost_volume) throw PlcError(fmt::format("{} {}", first->what(), *lost_volume), first->faults);

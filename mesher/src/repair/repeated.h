@@ -13,8 +13,8 @@ struct RepeatedReport {
 };
 
 /// Drops duplicate triangles. If triangles of a soup have the same corners and orientation, drops all but one
-/// of them where that lowers the number of open edges, because two closed solids may share a facet. In
-/// complexes, drops all but one of the triangles with the same corners. Cost: O(n log n).
+/// of them if that lowers the number of open edges; otherwise they stay, because two closed solids may share
+/// a facet. In complexes, always drops all but one of the triangles with the same corners. Cost: O(n log n).
 RepeatedReport drop_repeated(facets::ComplexDraft& draft);
 
 }  // namespace collarmesh::repairing

@@ -99,8 +99,8 @@ class SmallOnes {
     return border > 0 ? 2 * area / border : INFINITY;
   }
 
-  // Keeps features with the kept tags of the options, curves with a name, and patches around regions thinner
-  // than the size.
+  // Keeps features whose tags the options list as kept, curves with a name, and patches around regions
+  // thinner than the size.
   void find_kept(const RepairOptions& options) {
     const std::vector<bool> thin = thin_regions();
     for (Index p = 0; p < kept_.size(); ++p)
@@ -123,7 +123,8 @@ class SmallOnes {
     return thin;
   }
 
-  // Keeps all patches of a tag if all of them are small, unless the tag is only a number without a name.
+  // Keeps all patches of a tag if all of them are small, unless the tag is only the number of a CAD face,
+  // without a name.
   void keep_groups(const ComplexDraft& draft) {
     if (plc_.numbered_patches) return;
     std::set<Tag> stay;
@@ -195,7 +196,7 @@ class FeatureCollapser {
   }
 
   // Marks the draft's triangles in narrow patches by their facet numbers. The complex may have divided a
-  // polygon into other triangles; a triangle that it lacks is in the narrow patch that has all its corners.
+  // polygon differently: a triangle that only the draft has is in the narrow patch that has all its corners.
   void find_patches(const SmallOnes& small, const DraftPoints& points) {
     std::map<Corners, Index> patch_of;
     std::vector<std::set<Index>> narrow_at(draft_.points.size());
@@ -242,8 +243,8 @@ class FeatureCollapser {
   bool in_patch(Index t) const { return draft_.origins[t].facet == in_narrow_patch; }
   bool is_feature(Index a, Index b) const { return features_.contains(edge_key(a, b)); }
 
-  // Changes narrow triangles, flattest first, except where this round has already changed something. Returns
-  // whether any changed.
+  // Changes narrow triangles and sharp tips, those with the smallest height first, except where this round
+  // has already changed something. Returns whether the round changed anything.
   bool run_round() {
     std::vector<std::pair<double, Index>> found;
     find_narrow();
@@ -280,8 +281,8 @@ class FeatureCollapser {
     return false;
   }
 
-  // Returns whether the facets on both sides of a narrow place face opposite ways, as those of a blade do:
-  // there, a collapse would take away a wall's thickness.
+  // Returns whether the facets beside a narrow triangle face opposite ways, as those of a blade do. There, a
+  // collapse would remove the thickness of a wall.
   bool is_at_wall(Index t) const {
     constexpr double opposed = -0.5;
     std::vector<Vector> normals;
@@ -436,7 +437,7 @@ class FeatureCollapser {
   std::vector<int> rank_;            // by point, except added ones
   std::vector<CollapsedFeature> collapsed_;
   std::set<Index> tips_;       // apexes of the tips changed so far
-  std::vector<Index> narrow_;  // existing triangles that are narrow or have a sharp corner, in order
+  std::vector<Index> narrow_;  // existing triangles that are narrow or have a sharp corner, ascending
   Index looked_at_ = 0;        // triangles before this one have been examined
   // The changes of this round:
   std::set<Index> touched_;                      // triangles that change
@@ -474,8 +475,8 @@ std::vector<Shape> shapes_of_curves(const Plc& plc) {
 }
 
 /// Returns a tag for each new feature: the tag of the old feature with which it has the most points in common
-/// (of several, the most parallel one). Gives each old tag at most once. Other new features get numbers above
-/// all old tags.
+/// (of several, the most parallel one). Gives each old tag at most once. New features that match no old one
+/// get numbers above all old tags.
 std::vector<Tag> numbers_from(const std::vector<Shape>& before, const std::vector<Tag>& tags,
                               const std::vector<Shape>& after) {
   std::map<std::array<double, 3>, std::vector<Index>> at;

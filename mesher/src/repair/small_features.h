@@ -24,12 +24,12 @@ struct CollapsedFeature {
 std::vector<CollapsedFeature> collapse_in_draft(facets::ComplexDraft& draft, const Plc& plc, double size,
                                                 const RepairOptions& options, Work& work);
 
-/// Returns the features of which the edge or the triangle is gone.
+/// Returns the features whose `corners` are no longer an edge or a triangle of the draft.
 std::vector<SmallFeature> gone_from(const facets::ComplexDraft& draft,
                                     const std::vector<CollapsedFeature>& features);
 
 /// Gives the patches and curves of a changed complex the numbers that they had before, if both complexes were
-/// numbered by `number_untagged`; new ones get numbers after these.
+/// numbered by `number_untagged`. New patches and curves get numbers above all old ones.
 void keep_numbers(const Plc& before, Plc& after);
 
 }  // namespace collarmesh::repairing

@@ -49,8 +49,8 @@ std::vector<CornerSnapper::NearEdge> CornerSnapper::near_edges() {
   return found;
 }
 
-// Chooses the edges that are cut in this round. If a corner is too near to others on its edge, the edge's
-// triangles are examined again in the next round.
+// Chooses the edges that are cut in this round. If a corner is too near to other corners chosen for its edge,
+// the edge's triangles are examined again in the next round.
 void CornerSnapper::choose(const std::vector<NearEdge>& found) {
   struct EdgeState {
     std::vector<Index> sides;
@@ -71,9 +71,8 @@ void CornerSnapper::choose(const std::vector<NearEdge>& found) {
   }
 }
 
-// Returns whether cutting an edge makes progress, so that the process ends: either the edges from the corner
-// to the opposite corners are shorter than the edge, or this is its first cut without that since the last
-// overlay.
+// Returns whether an edge may be cut. So that the process ends, the new edges from the corner to the opposite
+// corners must be shorter than the edge; each edge may violate this once after each overlay.
 bool CornerSnapper::may_cut(const NearEdge& near, std::span<const Index> sides) {
   const bool shorter = std::all_of(sides.begin(), sides.end(), [&](Index side) {
     const Index opposite = apex(state_.draft().triangles, side);

@@ -21,8 +21,8 @@ class CornerSnapper {
   /// Keeps references to both arguments.
   CornerSnapper(SnapState& state, SnapCuts& cuts) : state_(state), cuts_(cuts) {}
 
-  /// Cuts edges near corners, unless that makes more than `most_triangles` new triangles. Compares only pairs
-  /// of a corner and an edge of which one belongs to a triangle not examined yet.
+  /// Cuts edges near corners, unless that makes more than `most_triangles` new triangles. Compares a corner
+  /// with an edge only if at least one of the two belongs to a triangle not examined yet.
   Outcome snap(std::size_t most_triangles);
 
   /// Allows each edge to be cut once more even if the new edges are not shorter than it.

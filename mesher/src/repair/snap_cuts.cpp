@@ -104,7 +104,7 @@ void SnapCuts::cut(Index t, const Corners& corners, const Origin& origin) {
   std::vector<Index> sorted = cuts.border;
   std::sort(sorted.begin(), sorted.end());
   const bool simple = std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end();
-  // If only sides are cut, cut from opposite corners: a triangulation might make the old edge again.
+  // If only sides are cut, cut from opposite corners: a triangulation might contain the whole side again.
   const bool plain = cuts.inside.empty() && along_.empty();
   if (simple && !plain) {
     const Vector normal = cross(at(corners[1]) - at(corners[0]), at(corners[2]) - at(corners[0]));

@@ -14,7 +14,7 @@ namespace collarmesh::repairing {
 class SnapCuts {
  public:
   struct OnEdge {
-    double parameter;  ///< position on the edge, from its smaller end (0) to the other one (1)
+    double parameter;  ///< position on the edge: 0 at the end with the smaller index, 1 at the other end
     Index point;
   };
 
@@ -25,8 +25,8 @@ class SnapCuts {
 
   /// Adds a point to the points that an edge gets. `moved`: its distance from the edge, for the report.
   void add(const Edge& edge, const OnEdge& point, double moved);
-  /// Adds a point to the points that a triangle gets, and returns true, if it is within the limit of the
-  /// triangle's plane and its projection onto the plane is inside the triangle. Returns false if not.
+  /// If a point is within the limit of a triangle's plane and its projection onto the plane is inside the
+  /// triangle, adds it to the points that the triangle gets and returns true. Otherwise returns false.
   bool add_if_inside(Index triangle, Index point);
   /// Records that an edge of another triangle comes near this triangle: the edge's pieces there become edges
   /// between this triangle's pieces, too.
@@ -70,7 +70,7 @@ class SnapCuts {
 
   SnapState& state_;
   std::map<Edge, std::vector<OnEdge>> on_edge_;
-  std::map<Index, std::vector<Index>> inside_;  // by triangle
+  std::map<Index, std::vector<Index>> inside_;  // by triangle: points inside it
   std::map<Index, std::vector<Edge>> along_;    // by triangle: edges that come near it
 };
 

@@ -32,7 +32,7 @@ bool Overlay::run() {
   return true;
 }
 
-// If edges of two other triangles cross on a third triangle, adds their crossing to that triangle, too.
+// If the edges of two triangles cross on a third triangle, adds their crossing to the third triangle, too.
 void Overlay::find_crossings_inside() {
   cuts_.for_each_along([&](Index t, const std::vector<Edge>& edges) {
     const Corners& corners = state_.draft().triangles[t];

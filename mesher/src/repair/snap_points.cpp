@@ -48,8 +48,8 @@ bool PointMerger::merge() {
   return true;
 }
 
-// Returns, sorted, the new points and those points of the grid that are near them. Removes these points from
-// the grid.
+// Returns the new points and the points of the grid that are near them, sorted by coordinates. Removes the
+// latter from the grid.
 std::vector<Index> PointMerger::points_to_compare() {
   in_grid_.resize(state_.draft().points.size(), false);
   std::vector<Index> order, touched = state_.take_touched();

@@ -26,8 +26,7 @@ SnapState::SnapState(ComplexDraft& draft, double limit, SnapWhat what, Work& wor
   }
 }
 
-// Returns whether a triangle takes part in snapping. If only borders do, the triangle must have a border
-// edge.
+// Returns whether a triangle takes part in snapping. With `SnapWhat::borders`, it must have a border edge.
 bool SnapState::takes_part(Index triangle) const {
   const Corners& c = draft_.triangles[triangle];
   return takes_part(edge_key(c[0], c[1])) || takes_part(edge_key(c[1], c[2])) ||

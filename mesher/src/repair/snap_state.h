@@ -27,8 +27,8 @@ class SnapState {
     double moved;
   };
 
-  /// Keeps references to the draft and the work. All triangles have to be examined except those that are
-  /// `known` (empty: none).
+  /// Keeps references to the draft and the work. Triangles marked as `known` (empty: none) count as examined;
+  /// each part has to examine all others.
   SnapState(facets::ComplexDraft& draft, double limit, SnapWhat what, Work& work,
             const std::vector<bool>& known);
 
@@ -41,10 +41,10 @@ class SnapState {
   double limit() const { return limit_; }
   const Point& at(Index p) const { return draft_.points[p]; }
 
-  /// Returns whether an edge takes part: in some modes only borders do.
+  /// Returns whether an edge takes part; with `SnapWhat::borders`, only border edges do.
   bool takes_part(const Edge& edge) const { return what_ != SnapWhat::borders || is_border(edge); }
   bool takes_part(Index triangle) const;
-  /// Returns whether a point takes part. `pinned`: it is loose or the end of a segment.
+  /// Returns whether a point takes part. `pinned`: the point is loose or the end of a segment.
   bool takes_part(Index point, bool pinned) const;
 
   void put(const facets::Corners& corners, const facets::Origin& origin);
@@ -83,9 +83,9 @@ class SnapState {
   std::vector<Done> done_;
 };
 
-/// Cancels duplicates among the triangles at those corners of the triangles added since the last call at
-/// which the fewest triangles meet. These include all triangles that have become duplicates. Returns the
-/// number of cancelled triangles.
+/// Cancels duplicates of the triangles added since the last call. For each of these, searches only the corner
+/// at which the fewest triangles meet, because a duplicate has all corners in common. Returns the number of
+/// cancelled triangles.
 std::size_t cancel_new_duplicates(SnapState& state);
 
 }  // namespace collarmesh::repairing

@@ -39,8 +39,8 @@ class Snapper {
 
   SnapReport run() {
     if (knows_some_) cancel_new_duplicates();
-    // Snapping corners makes few triangles, except where triangles run along each other. The limit stops the
-    // snapping then.
+    // Snapping corners adds few triangles, except where triangles run along each other. In that case, this
+    // limit ends the snapping.
     const std::size_t count = state_.triangles().count();
     most_triangles_ = count / (what_ == SnapWhat::corners ? 4 : 1) + count + 1000;
     if (ComplexDraft before = draft_; !snap_all_corners())
@@ -49,9 +49,9 @@ class Snapper {
   }
 
  private:
-  // Overlays triangles until nothing changes. Snaps the new corners after each overlay. Stops if the number
-  // of crossings that an overlay makes is large and more than half of that of the overlay before, if corners
-  // do not settle, or after too many overlays. In these cases undoes the changes at places that still change.
+  // Overlays triangles until nothing changes. Snaps the new corners after each overlay. Stops early if an
+  // overlay makes many crossings and more than half as many as the overlay before it, if corners do not
+  // settle, or after too many overlays; then undoes the changes at places that still change.
   SnapReport overlay_until_settled() {
     const ComplexDraft before = state_.triangles().compacted();
     const std::size_t done_before = state_.done().size();
@@ -98,8 +98,8 @@ class Snapper {
     return std::move(report_);
   }
 
-  // Snaps corners until nothing is near or the rounds are over. Returns false if there are more than
-  // `most_triangles_`.
+  // Snaps corners until nothing is near or the rounds are over. Returns false if there are more triangles
+  // than `most_triangles_`.
   bool snap_all_corners(std::size_t rounds = most_rounds) {
     settled_ = false;
     for (std::size_t round = 0; round < rounds; ++round) {
@@ -128,7 +128,7 @@ class Snapper {
   }
 
   bool cancel_;      // whether duplicates are cancelled
-  bool knows_some_;  // whether some triangles are known
+  bool knows_some_;  // whether some triangles are known not to be near each other
   ComplexDraft& draft_;
   SnapWhat what_;
   SnapState state_;

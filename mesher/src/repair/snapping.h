@@ -21,7 +21,7 @@ struct SnapReport {
   bool changed() const { return changes() + cancelled_triangles > 0; }
 };
 
-/// The features that take part.
+/// The features that take part in snapping.
 enum class SnapWhat {
   all,      ///< corners, edges and triangles with each other
   corners,  ///< corners with each other and with edges

@@ -9,7 +9,7 @@
 
 namespace collarmesh::repairing {
 
-/// A triangle with a multiplicity; negative: with opposite orientation.
+/// A triangle with a multiplicity, which is negative for the opposite orientation.
 struct WeightedTriangle {
   std::array<Point, 3> corners;
   int weight = 1;
@@ -44,7 +44,7 @@ class WindingNumber {
     Point centre;       // centroid of the triangles, weighted by area
     double radius = 0;  // radius of the smallest ball around the centre that contains all corners
     Vector area{};      // sum of weight * area vectors
-    std::array<double, 9> moment{};  // sum of weight * (centroid - centre) x area vector, as a matrix
+    std::array<double, 9> moment{};  // sum of weight * (centroid - centre) * (area vector)^T, row by row
     Index least_number = none, greatest_number = 0;
 
     Summary() = default;

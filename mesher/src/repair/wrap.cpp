@@ -85,7 +85,8 @@ std::array<Point3, 7> samples(const Triangle3& t) {
           CGAL::centroid(t)};
 }
 
-// Returns the tags of facets that wrapping loses: none if all facets have one tag, because it tells nothing.
+// Returns the facet tags that wrapping loses; none if all facets have one tag, because it distinguishes
+// nothing.
 std::vector<Tag> lost_tags(std::span<const PolygonSoup> soups) {
   std::set<Tag> tags;
   for (const PolygonSoup& soup : soups)

@@ -6,9 +6,9 @@ namespace collarmesh::second_order {
 
 namespace {
 
-// The determinant is a product of three linear functions. A Bernstein coefficient is 8 times the mean of this
-// product over the six ways to assign its three corners to the functions. A Way is one assignment, with its
-// coefficient and its weight, which is 8/6 times the number of equal assignments.
+// The determinant is the triple product of three linear vector functions. A Bernstein coefficient is 8 times
+// the mean of this product over the six ways to assign its three corners to the functions. A Way is one
+// assignment, with its coefficient and its weight, which is 8/6 times the number of equal assignments.
 struct Way {
   std::size_t coefficient = 0;
   double weight = 0;

@@ -146,7 +146,7 @@ class TetCurving {
     }
   }
 
-  // Returns the place of a node without a move.
+  // Returns the place of a node that has no Move.
   Point home(Index edge) const {
     const auto [a, b] = edges_.ends(edge);
     const Point middle = 0.5 * (mesh_.points[a] + mesh_.points[b]);
@@ -301,8 +301,8 @@ class TetCurving {
 
   bool is_valid(const CurvedTet& nodes) const { return jacobian_exceeds(nodes, options_.least_jacobian); }
 
-  // Moves the nodes of a tet that lie on no smooth feature back for good. Called if its other edges are
-  // straight.
+  // Moves the nodes of a tet that lie on no smooth feature back for good. Precondition: the edges on smooth
+  // features are straight.
   void put_back_inside(Index tet, std::vector<Index>& work) {
     for (const Index node : mesh_.tet_mid_nodes[tet]) {
       const Index edge = node - edges_.first_node();
@@ -367,11 +367,11 @@ class TetCurving {
   Untangling untangling_;
 };
 
-// Maximum number of rounds. The replacements of a tet may be poor, too, so another round follows as long as
-// the number of poor tets falls.
+// Maximum number of rounds. Tets that replace an unwanted one may be unwanted, too, so another round follows
+// as long as the number of unwanted tets falls.
 constexpr unsigned most_rounds = 4;
 
-/// Removes tets from a mesh of first order; returns false if none could be removed.
+/// Replaces unwanted tets of a mesh of first order. Returns false if none could be replaced.
 bool replace_in_mesh(TetMesh& mesh, const Plc& plc, std::span<const UnwantedTet> unwanted,
                      const SecondOrderOptions& options) {
   std::size_t gone = 0;

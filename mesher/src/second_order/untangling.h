@@ -14,10 +14,10 @@ namespace collarmesh::second_order {
 
 /// The procedure that makes curved tets valid by moving nodes that lie on no smooth feature: nodes inside
 /// regions anywhere, nodes on planar patches in their planes. They follow the curved edges beside them as far
-/// as necessary. Minimizes the sum of squares of a barrier and of the differences between the Jacobian's
-/// coefficients and those of the straight tet. The barrier is just below the least coefficient and rises
-/// until this coefficient is high enough (Toulorge, Geuzaine, Remacle and Lambrechts, Robust untangling of
-/// curvilinear meshes, 2013).
+/// as necessary. Divides the Jacobian's coefficients by that of the straight tet, and minimizes the sum of
+/// the squares of their differences from 1 and of a logarithm that is infinite at a barrier. The barrier is
+/// just below the least coefficient and rises until this coefficient is high enough (Toulorge, Geuzaine,
+/// Remacle and Lambrechts, Robust untangling of curvilinear meshes, 2013).
 class Untangling {
  public:
   /// Keeps all by reference.
@@ -31,9 +31,9 @@ class Untangling {
   std::size_t untangle_farther(Index tet);
   /// Returns whether the node of this edge is inside a region or on a planar patch.
   bool is_free(Index edge) const;
-  /// Returns whether the node may move.
+  /// Returns whether the node of this edge may move.
   bool may_move(Index edge) const { return is_free(edge) && !kept_.contains(edge); }
-  /// Fixes the node from now on.
+  /// Fixes the node of this edge.
   void keep(Index edge) { kept_.insert(edge); }
   std::vector<Index> tets_at(Index edge);
 

@@ -9,16 +9,16 @@
 
 namespace collarmesh::shells {
 
-/// The allowed distances of chords from the points of a complex: the tolerance or, where curves are near each
-/// other, a smaller distance, so that their chords do not cross.
+/// The largest allowed distances of chords from the points of their curves: the tolerance or, where curves
+/// are near each other, less, so that their chords do not cross.
 class ChordLimits {
  public:
-  /// Measures the distances between curves in the triangles of `complex`, whose vertex i is the point
-  /// `point_of[i]` of `plc`. Keeps all but the complex by reference. Cost: linear.
+  /// Measures the distances between curves in the triangles of `complex`. Vertex i of `complex` is the point
+  /// `point_of[i]` of `plc`. Keeps the tolerance by reference. Cost: linear.
   ChordLimits(const SurfaceComplex& complex, const Plc& plc, const std::vector<Index>& point_of,
               const SurfaceTolerance& tolerance);
 
-  /// Returns the limit at a point. Does not consider distances across the patches `without`.
+  /// Returns the limit at a point of the input. Ignores distances across the patches in `without`.
   double at_point(Index point, std::span<const Index> without = {}) const;
 
  private:

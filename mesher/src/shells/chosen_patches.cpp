@@ -46,7 +46,7 @@ struct Renumbering {
   }
 };
 
-/// The complex of the patches that are kept.
+/// The builder of a complex of the patches with some tags.
 class NamedPart {
  public:
   NamedPart(const Plc& whole, const std::set<Tag>& tags)

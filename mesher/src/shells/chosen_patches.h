@@ -12,13 +12,13 @@ struct ChosenPatches {
   Plc plc;
   std::vector<Index> patch, curve;  ///< numbers in the whole complex, by index in `plc`
 
-  /// Restricts the exact geometry and measures of the whole complex to this part.
+  /// Restricts exact geometry and measures to this part. Precondition: they are for the whole complex.
   void adapt(PipelineOptions& options) const;
   void adapt(ShapeMeasures& exact) const;
 };
 
-/// Chooses patches. Throws OptionError, with the known names, if one of `names` is not the name or number of
-/// a patch.
+/// Returns the patches with these names or numbers. Throws OptionError, which lists the patches, if one of
+/// `names` is not the name or number of a patch.
 ChosenPatches choose_patches(const Plc& whole, const std::vector<std::string>& names);
 
 }  // namespace collarmesh::shells

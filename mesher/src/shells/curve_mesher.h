@@ -16,9 +16,10 @@ struct CurveMesh {
   SecondOrderReport second_order;
 };
 
-/// Divides all curves of a complex by the sizes, within the tolerance. With exact geometry, the vertices lie
-/// on it, and so do the mid-edge nodes of order 2; a node that would be farther than the tolerance from its
-/// place on the complex, or would fold its edge, stays on the complex. Cost: linear in the points and edges.
+/// Divides all curves of a complex by the sizes, within the tolerance. With exact geometry, vertices inside
+/// curves move onto it by at most the largest tolerance, and mid-edge nodes (order 2) by less than half an
+/// edge; the others stay on the complex. A mid-edge node that would fold its edge is put into the middle of
+/// the straight edge. Cost: linear in the points and edges.
 CurveMesh mesh_curves(const Plc& plc, const MeshOptions& options, const SurfaceTolerance& tolerance,
                       unsigned order, const ExactGeometry& exact);
 

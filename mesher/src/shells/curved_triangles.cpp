@@ -9,7 +9,7 @@ namespace collarmesh::shells {
 
 namespace {
 
-/// The placement of mid-edge nodes of a mesh of triangles on smooth features.
+/// The placement of a triangle mesh's mid-edge nodes on curves and patches.
 class TriangleCurving {
  public:
   TriangleCurving(TetMesh& mesh, const Plc& plc, SurfaceMesher& mesher, const ExactGeometry& exact,
@@ -41,7 +41,7 @@ class TriangleCurving {
     const Point middle = 0.5 * (mesh_.points[edge[0]] + mesh_.points[edge[1]]);
     const std::optional<Point> exact =
         exact_ ? exact_(feature.dimension, feature.feature, place) : std::nullopt;
-    // Ignore a place on another sheet of the feature.
+    // Ignore an exact place so far away that it may be on another sheet of the feature.
     const double reach = 0.5 * distance(mesh_.points[edge[0]], mesh_.points[edge[1]]);
     const Point wanted = exact && distance(*exact, place) < reach ? *exact : place;
     const auto point = static_cast<Index>(mesh_.points.size());
@@ -97,7 +97,7 @@ class TriangleCurving {
     const Vector normal = cross(p[1] - p[0], p[2] - p[0]);
     const double scale = squared_norm(normal);
     if (!(scale > 0)) return 0;
-    // Computes control points of the sides, and their differences in both directions at the three corners.
+    // Control points of the sides, and the derivatives from p[0] towards p[1] and p[2] at the three corners.
     const Point ab = 2 * p[3] - 0.5 * (p[0] + p[1]), bc = 2 * p[4] - 0.5 * (p[1] + p[2]),
                 ca = 2 * p[5] - 0.5 * (p[2] + p[0]);
     const std::array<Vector, 3> u{2 * (ab - p[0]), 2 * (p[1] - ab), 2 * (bc - ca)},

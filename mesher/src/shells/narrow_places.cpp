@@ -11,8 +11,8 @@ namespace {
 // Length of edges on both sides of a narrow place, relative to its width. Angles are then 22 degrees where
 // ends of edges face each other, and 39 where ends face middles.
 constexpr double length_per_width = 2.5;
-// Approximate limit on the number of edges in narrow places. In narrower places edges are longer than good
-// angles need.
+// Approximate limit on the number of edges in narrow places. To keep it, edges in the narrowest places are
+// longer than good angles need.
 constexpr double most_edges = 45'000;
 
 }  // namespace
@@ -28,11 +28,11 @@ void NarrowPlaces::measure() {
   });
 }
 
-/// Sets a lower bound on the length of divided edges, so that there are not too many edges.
+/// Raises `widths_` to a lower bound, a share of the target edge length, so that there are not too many
+/// edges.
 void NarrowPlaces::bound_widths() {
   constexpr unsigned most_steps = 60;
-  // The bound starts at `first` target edge lengths and grows by the factor `step` until edges are few
-  // enough.
+  // The share starts at `first` and grows by the factor `step` until edges are few enough.
   constexpr double step = 1.3, first = 1e-6;
   const auto least = [&](Index e, double share) {
     const auto& [from, to] = complex_.edges[e].at;
@@ -53,8 +53,7 @@ void NarrowPlaces::bound_widths() {
       widths_[e] = std::max(widths_[e], least(e, share));
 }
 
-/// Lowers sizes at the ends of edges that are at most four times as long as the features facing them allow
-/// (`widths_`).
+/// Lowers the sizes at the ends of edges to `widths_`, except at edges more than four times as long.
 void NarrowPlaces::lower_sizes() {
   constexpr double much_longer = 4;
   for (Index e = 0; e < complex_.edges.size(); ++e) {

@@ -9,15 +9,15 @@
 
 namespace collarmesh::shells {
 
-/// A triangle with all corners on curves, and one of its sides.
+/// A triangle with all corners on curves, and its only side on a curve.
 struct NarrowTriangle {
   Index triangle;
-  Index edge;    ///< the side
-  double width;  ///< distance of the third corner from the side
+  Index edge;    ///< the edge of the curve at this side
+  double width;  ///< distance of the third corner from this side
 };
 
 /// Calls visit(NarrowTriangle) for all triangles with all corners on curves and exactly one side on a curve.
-/// A triangle with two such sides lies in a corner.
+/// Excludes triangles with two sides on curves, because they lie in a corner.
 template <class Visit>
 void for_narrow_triangles(const SurfaceComplex& complex, const Visit& visit) {
   for (Index t = 0; t < complex.triangles.size(); ++t) {
@@ -44,16 +44,16 @@ void for_narrow_triangles(const SurfaceComplex& complex, const Visit& visit) {
 
 /// The division of the curves of a complex where their distance across a patch is smaller than the length of
 /// their edges, so that triangles between them have good angles. Edge lengths grow away from such places by
-/// the gradation. Distances are measured in triangles with all corners on curves; dividing these triangles
-/// makes the distances more exact.
+/// the gradation. Distances are measured in triangles with all corners on curves, so they become more exact
+/// when the curves are divided.
 class NarrowPlaces {
  public:
   /// Keeps references to all arguments.
   NarrowPlaces(SurfaceComplex& complex, SurfaceEditor& editor, const SurfaceSizes& sizes,
                const Execution& execution);
 
-  /// Divides curves with at most this many new vertices. Returns whether it left edges longer than good
-  /// angles need, to limit their number.
+  /// Divides curves until there are about this many new vertices. Returns whether it left edges longer than
+  /// good angles need, to limit their number.
   bool run(std::size_t most_vertices);
 
  private:
@@ -70,7 +70,7 @@ class NarrowPlaces {
   SurfaceEditor& editor_;
   const SurfaceSizes& sizes_;
   const Execution& execution_;
-  std::vector<double> widths_;  // by edge: its allowed length, considering the features that face it
+  std::vector<double> widths_;  // by edge: its largest length for good angles with the features that face it
   std::size_t limit_ = 0;
   bool bounded_ = false;
 };

@@ -67,8 +67,8 @@ Vector PatchSurfaces::normal_at(Index patch, Index triangle, const Point& p) con
   return squared_norm(own) > 0 ? unit(own) : normals_[patch];
 }
 
-/// Returns the triangle nearest to p, or one that is nearer than the share `enough` of the patch's least
-/// tolerance.
+/// Returns the triangle nearest to p, or any triangle that is nearer than the share `enough` of the patch's
+/// least tolerance.
 Index PatchSurfaces::triangle_near(Index patch, const Point& p, double enough) const {
   const TriangleHierarchy& tree = hierarchy(patch);
   const Index first = plc_.patches[patch].first_triangle;
@@ -104,7 +104,7 @@ PatchSurfaces::Foot PatchSurfaces::nearest(Index patch, const Point& p) const {
 double PatchSurfaces::agreement(const Corners& t, Index patch) const { return fit(t, patch).agreement; }
 
 PatchSurfaces::Fit PatchSurfaces::fit(const Corners& t, Index patch, double enough) const {
-  constexpr double certain = 0.8;  // agreement above which a place that is near enough is accepted
+  constexpr double certain = 0.8;  // above this agreement, a place near enough is taken for the nearest one
   const Vector area = area_vector(t);
   const double size = norm(area);
   const auto agreement = [&](const Vector& normal) { return size > 0 ? dot(area, normal) / size : -1; };

@@ -35,22 +35,22 @@ class PatchSurfaces {
     return p - dot(p - origin, normals_[patch]) * normals_[patch];
   }
 
-  /// Returns the cosine of the angle between the normals of the triangle and of the patch; -1 for a triangle
-  /// without area.
+  /// Returns the cosine of the angle between the triangle's normal and the patch's normal nearest to the
+  /// triangle's centre; -1 for a triangle without area.
   double agreement(const Corners& t, Index patch) const;
   /// The quality of a triangle's fit to a patch.
   struct Fit {
     double agreement = 1;  ///< see `agreement`
     double excess = 0;  ///< distance of the triangle's centre from the patch, divided by the tolerance there
   };
-  /// Returns the fit of a triangle. Distances below the share `enough` of the tolerance need not be exact:
-  /// the result may be too large, up to that share.
+  /// Returns the fit of a triangle. An excess below `enough` need not be exact: it may be overestimated, up
+  /// to `enough`.
   Fit fit(const Corners& t, Index patch, double enough = 0) const;
-  /// Measures the distances of two points inside a segment from the patch. Returns the larger one, divided by
-  /// the tolerance there. `enough`: as for `fit`.
+  /// Measures the distances of the points at one and two thirds of the segment ab from the patch, divides
+  /// them by the tolerances there, and returns the larger quotient. `enough`: as for `fit`.
   double excess_between(Index patch, const Point& a, const Point& b, double enough) const;
-  /// Returns points of a smooth patch that are farther than this share of the tolerance from the triangles on
-  /// it, each with the nearest triangle; at most one point per triangle.
+  /// Returns points of a smooth patch that are farther from all of `triangles` than this share of the
+  /// tolerance, each with the index of the nearest triangle; at most one point per triangle.
   std::vector<std::pair<Index, Point>> far_points(Index patch, std::span<const Corners> triangles,
                                                   double share) const;
 

@@ -21,8 +21,8 @@ namespace collarmesh::shells {
 
 namespace {
 
-// Shares of the tolerance that the distance between mesh and complex may use: in meshes whose vertices will
-// move onto exact geometry, and in all others.
+// Shares of the tolerance that the distance between mesh and complex may use: before vertices move onto exact
+// geometry, and in the final mesh.
 constexpr double share_before_moves = 0.7, share = 0.85;
 
 struct Ended {};
@@ -35,7 +35,7 @@ bool is_solid(const Plc& plc) {
 
 /// Returns the tolerance. Where faces nearly touch, the default of solids is tiny, because volumes would
 /// vanish there; surfaces need no such bound. So here the tolerance is at least a share of the target edge
-/// length, unless the options give one.
+/// length, unless the options give a tolerance.
 SurfaceTolerance surface_tolerance(const Plc& plc, const PipelineOptions& options) {
   constexpr double least_per_size = 0.005;
   const Bounds& bounds = options.mesh.bounds;
@@ -125,7 +125,7 @@ class Run {
                     {.bounds = bounds, .exact = options.exact_measures, .threads = options.mesh.threads});
   }
 
-  /// Calls the stages; if one of them was stopped, the result has no mesh.
+  /// Calls `stages`. If the run was stopped, leaves no mesh in `made`.
   template <class Stages>
   void until_ended(PipelineResult& made, const Stages& stages) {
     try {
@@ -164,7 +164,7 @@ SoupPipelineResult run(ComplexSource& source, const PipelineOptions& options, co
     stages.build(source, all);
     PipelineOptions adapted = stages.options();
     if (!adapted.faces.empty()) {
-      whole = std::move(all.plc);  // the adapted options may refer to the complex
+      whole = std::move(all.plc);  // kept, because the adapted options may refer to it
       source.adapt(whole, adapted);
       ChosenPatches chosen = choose_patches(whole, adapted.faces);
       chosen.adapt(adapted);

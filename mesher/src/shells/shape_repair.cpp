@@ -12,10 +12,9 @@ namespace {
 constexpr double margin = 1.5;
 // Edges shorter than twice this share of the target edge length are not divided.
 constexpr double shortest = 0.015;
-// Vertices with more triangles, which a tessellation may have, are not moved or removed; their neighbours
-// are.
+// Vertices with more triangles, which a tessellation may have, are neither moved nor removed.
 constexpr std::size_t most_triangles = 24;
-// The smallest gain of shape for which a vertex is moved.
+// The smallest gain of shape, degrees, for which a vertex is moved.
 constexpr double least_gain = 0.1;
 
 }  // namespace
@@ -46,7 +45,8 @@ bool ShapeRepair::poor(Index triangle, double wanted) const {
   return shape < wanted * bound(triangle) / least_angle;
 }
 
-/// Returns whether improving the triangle has failed and nothing around it has changed since.
+/// Returns whether an attempt to improve the triangle to at least `wanted` has failed and nothing around it
+/// has changed since.
 bool ShapeRepair::tried(Index triangle, double wanted) {
   if (triangle >= tried_.size()) return false;
   std::size_t changes = 0;
@@ -191,8 +191,8 @@ void ShapeRepair::improve(double wanted) {
   }
 }
 
-/// Divides an edge of a curve beside the triangle if a vertex at p would encroach upon it. Returns whether it
-/// would, even if the edge cannot be divided.
+/// Divides a side of the triangle that lies on a curve, if a vertex at p would encroach upon it. Returns
+/// whether a vertex at p would encroach upon such a side, even if the side cannot be divided.
 bool ShapeRepair::divide_curve_beside(Index triangle, const Point& p) {
   constexpr double least_cosine = -0.45;  // cosine of 117 degrees
   const std::array<Index, 3> c = complex_.triangles[triangle].corners;
@@ -216,8 +216,9 @@ bool ShapeRepair::divide_curve_beside(Index triangle, const Point& p) {
   return false;
 }
 
-/// Walks from the triangle to the one that contains p, and inserts a vertex there, unless a vertex is nearer
-/// than `nearest`. Divides the edge of a curve that is in the way.
+/// Walks from the triangle to the one that contains p, and inserts a vertex there, unless a corner is nearer
+/// to p than `nearest`. If an edge of a curve is in the way, divides this edge and inserts nothing at p.
+/// Returns whether there is a new vertex.
 bool ShapeRepair::insert_towards(Index triangle, const Point& p, double nearest) {
   constexpr unsigned most_steps = 30;
   constexpr double inside = -1e-9;
@@ -255,8 +256,8 @@ bool ShapeRepair::insert_towards(Index triangle, const Point& p, double nearest)
   return v != none;
 }
 
-/// Returns whether the triangle lies between curves so close to each other that edges of the allowed length
-/// cannot reach the bound.
+/// Returns whether all corners are on curves so close to each other that good angles would need edges shorter
+/// than allowed (see `set_narrowest`).
 bool ShapeRepair::too_narrow(Index triangle) const {
   const auto& c = complex_.triangles[triangle].corners;
   double size = INFINITY, longest = 0;
@@ -309,7 +310,7 @@ std::size_t ShapeRepair::run(std::size_t most_vertices) {
     if (pass > first_passes && poor_ones.size() > fewest + fewest / 4 + 20) limit = 0;
     for (const Index t : poor_ones) {
       if (!poor(t, wanted) || tried(t, refined)) continue;
-      // Moves alone cannot repair a triangle that is far from good.
+      // Moves alone cannot repair a triangle that is far from good, so there they come last.
       const bool near = editor_.shape(t) > 0.5 * wanted;
       // After some passes edges are no longer collapsed, so that new vertices stay.
       if (improve_connections(t, wanted, pass < collapsing_passes) || (near && move_corners(t)) ||

@@ -22,28 +22,29 @@ class ShapeRepair {
   /// Works until all triangles are good or nothing helps, with at most `most_vertices` new vertices. Returns
   /// the number of triangles that stay out of bounds.
   std::size_t run(std::size_t most_vertices);
-  /// Improves triangles without new vertices, up to the shape `wanted`.
+  /// Improves triangles with shapes below `wanted`, without new vertices.
   void improve(double wanted);
-  /// Moves a vertex if that increases the least shape around it.
+  /// Moves a vertex if that increases the least shape around it. Returns whether it moved.
   bool move_best(Index vertex);
-  /// Divides triangles that are too far from their patches, with at most `most_vertices` new vertices.
-  /// Returns whether it divided any.
+  /// Divides triangles that are too far from their patches, or to which a point of a patch is too far, with
+  /// at most `most_vertices` new vertices. Returns whether it divided any triangle.
   bool approach(std::size_t most_vertices);
-  /// Collapses edges if the shapes stay good.
+  /// Collapses short edges if the shapes stay good.
   void coarsen();
 
-  /// Sets the least height, relative to the target edge length, that a triangle between curves must have to
-  /// be refined.
+  /// Excludes triangles with all corners on curves from refinement if their height is less than this share of
+  /// the target edge length.
   void set_narrowest(double share) { narrowest_ = share; }
 
-  /// Returns the bound on a triangle's shape. It is smaller at a sharp corner of the input.
+  /// Returns the least permitted shape of a triangle, in degrees: `least_angle` or, for a triangle in a sharp
+  /// corner of the input, half of the corner's angle.
   double bound(Index triangle) const;
 
  private:
   bool poor(Index triangle, double wanted) const;
   bool tried(Index triangle, double wanted);
   void note_tried(Index triangle, double wanted);
-  /// Returns poor triangles, worst first: among `known` ones and those from number `first` on.
+  /// Returns the poor triangles among `known` and among all from number `first` on, worst first.
   std::vector<Index> poor_triangles(double wanted, std::span<const Index> known, Index first) const;
   bool approach_points(std::size_t limit);
   bool improve_connections(Index triangle, double wanted, bool may_collapse);

@@ -10,8 +10,7 @@ namespace collarmesh::shells {
 
 namespace {
 
-// Corners are sharp below this angle, degrees. A triangle in a less sharp corner may be divided into two good
-// ones.
+// Corners are sharp below this angle, degrees. A wider corner has room for two good triangles.
 constexpr double sharp = 2 * least_angle;
 
 unsigned end_of(const SurfaceComplex::Edge& edge, Index vertex) {
@@ -20,7 +19,7 @@ unsigned end_of(const SurfaceComplex::Edge& edge, Index vertex) {
 
 /// The triangles of a patch around a vertex between two edges of curves.
 struct Fan {
-  double angle = 0;
+  double angle = 0;  // degrees
   std::vector<Index> edges;
 };
 
@@ -84,9 +83,9 @@ SharpCorners::Corner SharpCorners::find(const SurfaceComplex& complex, Index ver
   return corner;
 }
 
-/// Returns the largest length of tips that the sizes permit. It must not leave an edge behind a tip that is
-/// much shorter than the tip. The chords of tips may cross no other chords except those of the curves in the
-/// same corner, because a triangle closes the corner.
+/// Returns the length of the tips at a corner: the target edge length there, or less if a curve is short, if
+/// the rest of a curve would be much shorter than its tip, or if a tip would be too far from its curve.
+/// Ignores limits across the corner's own patches, because a triangle closes the corner.
 double SharpCorners::tip_length(const Plc& plc, const CurvePaths& paths, const SurfaceSizes& sizes,
                                 const ChordLimits& limits, const Corner& corner) const {
   constexpr unsigned most_steps = 40;

@@ -9,19 +9,19 @@
 
 namespace collarmesh::shells {
 
-/// Corners of patches, between two curves, that are sharper than the angles of good triangles. All curves
-/// that begin there at a sharp angle get a first edge of the same length, the tip. A triangle between two
-/// tips closes the corner, and no sharp corner remains behind it.
+/// Corners of patches, between two curves, that are too sharp for two good triangles. At such a corner the
+/// first edges of the curves, the tips, are equally long. A triangle between two tips closes the corner, and
+/// no sharp corner remains behind it.
 class SharpCorners {
  public:
-  /// Finds the corners. `complex` has triangles on the patches of `plc`. Cost: linear.
+  /// Finds the corners. Precondition: `complex` has triangles on the patches of `plc`. Cost: linear.
   SharpCorners(const SurfaceComplex& complex, const Plc& plc, const CurvePaths& paths,
                const SurfaceSizes& sizes, const ChordLimits& limits);
 
   /// Returns the lengths of the first and of the last edge of a curve; 0 for an end that is not at a sharp
   /// corner.
   const std::array<double, 2>& tips(Index curve) const { return tips_[curve]; }
-  /// Marks the edges that are tips.
+  /// Sets `Edge::tip` of the tips, and lowers the sizes at their ends to the tips' lengths.
   void mark(SurfaceComplex& complex) const;
 
  private:

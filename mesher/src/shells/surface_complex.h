@@ -33,8 +33,8 @@ class SurfaceComplex {
   struct Edge {
     std::array<Index, 2> ends{none, none};  ///< none: the edge is removed
     Index curve = none;
-    std::array<double, 2> at{};  ///< arc lengths of the ends on the curve, ascending; the second one may
-                                 ///< exceed the curve's length
+    std::array<double, 2> at{};  ///< arc lengths of the ends on the curve, ascending; on a closed curve the
+                                 ///< second one may exceed the curve's length
     Index tip = none;            ///< if the edge is a tip (`SharpCorners`): its end at the corner; else none;
                                  ///< all tips at a corner are equally long
 
@@ -76,7 +76,7 @@ class SurfaceComplex {
 
   /// Returns the triangles that have both vertices.
   std::vector<Index> triangles_at(Index a, Index b) const;
-  /// Returns the triangles that have both vertices if there are exactly two.
+  /// Returns the triangles that have both vertices; nothing unless there are exactly two.
   std::optional<std::array<Index, 2>> two_triangles_at(Index a, Index b) const;
   bool have_triangle(Index a, Index b) const;
   /// Returns the edge of a curve between the vertices, or none.
@@ -85,10 +85,10 @@ class SurfaceComplex {
   std::vector<Index> neighbours(Index v) const;
   /// Returns whether the triangles and edges of a vertex exist and have it as a corner or end.
   bool consistent(Index vertex) const;
-  /// Returns whether this holds for all vertices, and every triangle and edge is listed exactly once at each
+  /// Returns whether all vertices are consistent, and every triangle and edge is listed exactly once at each
   /// of its corners or ends. Cost: near linear.
   bool consistent() const;
-  /// Returns the triangle on the other side of the side ab of a triangle; none at a curve or border.
+  /// Returns the neighbour of a triangle across its side ab; none if the side is on a curve or border.
   Index across(Index triangle, Index a, Index b) const;
 };
 

@@ -95,8 +95,8 @@ PatchSurfaces::Fit SurfaceEditor::worst_fit(std::span<const Index> triangles) co
   return worst;
 }
 
-/// Returns whether created triangles fit their patches, at their centres and, unless `centre` is none, along
-/// their sides at that vertex.
+/// Returns whether created triangles fit their patches, or at least as well as the worst of the removed ones:
+/// at their centres and, unless `centre` is none, along their sides at that vertex.
 bool SurfaceEditor::fit(std::span<const Created> created, std::span<const Index> removed,
                         Index centre) const {
   std::optional<PatchSurfaces::Fit> before;
@@ -202,7 +202,8 @@ std::optional<std::array<Index, 2>> SurfaceEditor::edges_around(Index vertex) co
   return in_order ? std::array{edges[0], edges[1]} : std::array{edges[1], edges[0]};
 }
 
-/// Returns the distance between a chord that replaces two edges and its curve, divided by the tolerance.
+/// Returns the largest distance, divided by the tolerance, between a curve and the chord that would replace
+/// two of its edges.
 double SurfaceEditor::sag_across(const std::array<Index, 2>& two) const {
   const auto& before = complex_.edges[two[0]];
   const auto& behind = complex_.edges[two[1]];
@@ -230,7 +231,7 @@ void SurfaceEditor::merge_edges(Index middle) {
                     {before.at[0], before.at[1] + (behind.at[1] - behind.at[0])});
 }
 
-/// Removes a vertex with its triangles and puts new ones there.
+/// Removes a vertex with its triangles and puts new triangles there.
 void SurfaceEditor::replace_vertex(Index vertex, std::span<const Created> created) {
   for (const Index t : std::vector<Index>(complex_.vertices[vertex].triangles)) complex_.remove_triangle(t);
   if (complex_.vertices[vertex].feature.dimension == 1) merge_edges(vertex);

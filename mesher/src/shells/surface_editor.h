@@ -26,43 +26,43 @@ class SurfaceEditor {
 
   /// Conditions for an edge collapse.
   struct CollapseRule {
-    double longest = INFINITY;  ///< longest edge afterwards, relative to the target edge length
-    double least_shape = 0;     ///< least shape afterwards, or the one before if that is less
-    bool better = false;        ///< whether the least shape must increase
+    double longest = INFINITY;  ///< bound on edge lengths afterwards, relative to the target edge length
+    double least_shape = 0;  ///< bound on shapes afterwards, degrees; the least shape before, if that is less
+    bool better = false;     ///< whether the least shape must increase
   };
 
   /// Conditions for removing a vertex.
   struct Removal {
-    double longest;      ///< longest new edge, relative to the length that the options ask for
-    double least_shape;  ///< least shape of the new triangles
+    double longest;      ///< bound on lengths of new edges, relative to the length that the options ask for
+    double least_shape;  ///< bound on the shapes of new triangles, degrees
   };
   /// A triangle that does not exist yet.
   struct Created {
     std::array<Index, 3> corners;
     Index patch;
   };
-  /// Triangles in place of those around a vertex.
+  /// Triangles that can replace those around a vertex, and the least of their shapes.
   struct Filling {
     std::vector<Created> triangles;
     double least_shape = INFINITY;
   };
 
-  /// Replaces the edge ab inside a patch by the other diagonal of its two triangles, if the least shape
-  /// increases.
+  /// Replaces the edge ab inside a patch by the other diagonal of its two triangles, if that increases the
+  /// least shape. Returns whether it did.
   bool flip(Index a, Index b);
-  /// Collapses the edge onto its vertex `to`. Returns false if that is not possible.
+  /// Collapses an edge onto its vertex `to`. Returns false if that is impossible or against the rule.
   bool collapse(Index from, Index to, const CollapseRule& rule);
   /// Returns the triangles with the largest least shape that can take the place of a vertex and its
   /// triangles; nothing if the vertex cannot be removed.
   std::optional<Filling> filling_without(Index vertex, const Removal& rule) const;
-  /// Removes a vertex. `filling`: what filling_without returned for it; nothing has changed since then.
+  /// Removes a vertex. Precondition: filling_without returned `filling`, and nothing has changed since then.
   void remove(Index vertex, const Filling& filling) { replace_vertex(vertex, filling.triangles); }
   /// The state of a vertex and its neighbours before the vertex is removed.
   struct Surroundings {
     Index vertex = none;
     std::vector<SurfaceComplex::Triangle> triangles;
     std::vector<SurfaceComplex::Edge> edges;
-    Index first_triangle = 0, first_edge = 0;  ///< all triangles and edges with larger numbers are new
+    Index first_triangle = 0, first_edge = 0;  ///< triangles and edges from these numbers on are new
     struct Neighbour {
       Index vertex;
       Point point;
@@ -90,11 +90,12 @@ class SurfaceEditor {
   Index insert(Index triangle, const Point& p);
   /// Flips edges opposite a new vertex, and then those opposite it in the new triangles.
   void flip_around(Index vertex);
-  /// Moves a vertex within its patch to near p, if the least shape around it stays at least `least`.
+  /// Moves a vertex to the place of its patch nearest to p, if the least shape around it is then at least
+  /// `least`. Returns whether it moved.
   bool move(Index vertex, const Point& p, double least);
-  /// Moves a vertex along its curve to an arc length, under the same condition.
+  /// Moves a vertex along its curve to an arc length, under the condition of `move`.
   bool slide(Index vertex, double at, double least);
-  /// Moves a vertex exactly to p, which lies on the exact geometry of its feature, under the same condition.
+  /// Moves a vertex exactly to p, which lies on its feature, under the condition of `move`.
   bool put(Index vertex, const Point& p, double least);
   /// Returns the point at an arc length of a vertex's curve. Precondition: the vertex is on one curve only.
   Point place_on_curve(Index vertex, double at) const {
@@ -106,10 +107,10 @@ class SurfaceEditor {
 
   bool planar(Index patch) const { return surfaces_.planar(patch); }
   double shape(Index triangle) const { return complex_.triangles[triangle].shape; }
-  /// Returns the least shape of a vertex's triangles; ends early if one is below `bound`.
+  /// Returns the least shape of a vertex's triangles; if that is below `bound`, any of the shapes below it.
   double least_shape_at(Index vertex, double bound = 0) const;
-  /// If a triangle is farther from its patch than allowed, returns the side to divide (the place of its first
-  /// corner), else 3.
+  /// Returns the side to divide (0 to 2: the place of its first corner in the triangle) if a triangle is
+  /// farther from its patch than allowed, else 3.
   unsigned side_too_far(Index triangle) const;
   /// Returns points of smooth patches that are too far from the triangles, with the triangles to divide
   /// there.
@@ -117,7 +118,8 @@ class SurfaceEditor {
   double size_of_edge(Index a, Index b) const {
     return 0.5 * (complex_.vertices[a].size + complex_.vertices[b].size);
   }
-  /// Returns the edge length that the options ask for, see SurfaceComplex::Vertex.
+  /// Returns the edge length that the options ask for: with a gradation among them, the target edge length;
+  /// else the one without regard to short curves and narrow places.
   double asked_of_edge(Index a, Index b) const {
     return sizes_.gradation_is_given() ? size_of_edge(a, b)
                                        : 0.5 * (complex_.vertices[a].asked + complex_.vertices[b].asked);
@@ -125,7 +127,7 @@ class SurfaceEditor {
   double length(Index a, Index b) const {
     return distance(complex_.vertices[a].point, complex_.vertices[b].point);
   }
-  /// Returns the edges of a vertex's curve, before and behind it; none unless it is inside a single curve.
+  /// Returns the edges before and behind a vertex on its curve; nothing unless the vertex is inside a curve.
   std::optional<std::array<Index, 2>> edges_around(Index vertex) const;
   /// Returns whether the vertex is the outer end of a tip (`SharpCorners`), the one away from the sharp
   /// corner. Such vertices stay where they are.
@@ -146,9 +148,9 @@ class SurfaceEditor {
   double sag_across(const std::array<Index, 2>& two) const;
   void merge_edges(Index middle);
   void replace_vertex(Index vertex, std::span<const Created> created);
-  /// The hole in a patch's triangles around a vertex that is removed: their other corners in order. At an
-  /// interior vertex the polygon is closed; at a vertex of a curve it begins and ends with the neighbours on
-  /// the curve.
+  /// The hole that removing a vertex leaves in a patch: the other corners of the removed triangles, in order.
+  /// At an interior vertex the polygon is closed; at a vertex of a curve it begins and ends with the
+  /// neighbours on the curve.
   struct Hole {
     Index patch;
     std::vector<Index> border;

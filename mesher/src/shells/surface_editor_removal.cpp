@@ -1,4 +1,4 @@
-// Removal of vertices: the best triangles are put into the hole.
+// Removes vertices, and fills the holes with the best triangles.
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -70,7 +70,7 @@ bool SurfaceEditor::may_join(Index a, Index b, const Removal& rule) const {
          complex_.edge_at(a, b) == none;
 }
 
-/// Finds the triangles for a hole.
+/// Appends the best triangles for a hole to `created`. Returns false if the rule permits none.
 bool SurfaceEditor::fill(const Hole& hole, const Removal& rule, std::vector<Created>& created) const {
   const std::vector<Index>& border = hole.border;
   std::vector<Point> polygon;
@@ -106,7 +106,7 @@ bool SurfaceEditor::filling_fits(Index vertex, const Hole& hole, std::span<const
          std::sqrt(squared) <= most_excess_ * surfaces_.nearest(hole.patch, p).tolerance;
 }
 
-/// Returns whether a chord may replace the edges at a vertex of a curve.
+/// Returns whether a chord may replace the two edges at a vertex inside a curve.
 bool SurfaceEditor::chord_permits(Index vertex, std::span<const Hole> holes, const Removal& rule) const {
   const auto around = edges_around(vertex);
   if (!around || holes.empty()) return false;

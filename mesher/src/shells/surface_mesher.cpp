@@ -89,7 +89,8 @@ void SurfaceMesher::take_asked_sizes(const std::vector<std::pair<Index, double>>
   grade(complex_, sizes_.gradation(), &SurfaceComplex::Vertex::asked);
 }
 
-/// Inserts vertices where the curve is divided. `edges` are the curve's edges in order.
+/// Inserts vertices where `divide_curve` divides the curve, and marks them in `kept_`. `edges` are the
+/// curve's edges in order.
 void SurfaceMesher::divide_curve_at(Index curve, std::vector<Index>& edges, const std::array<double, 2>& tips,
                                     const ChordLimits& limits) {
   constexpr double same = 1e-6;
@@ -126,7 +127,7 @@ void SurfaceMesher::divide_curves(const SharpCorners& corners) {
     if (!edges[curve].empty()) divide_curve_at(curve, edges[curve], corners.tips(curve), limits);
 }
 
-/// Removes curve vertices at which the curve is no longer divided.
+/// Removes vertices inside curves that are not in `kept_`.
 void SurfaceMesher::collapse_on_curves() {
   constexpr unsigned rounds = 3;
   const SurfaceEditor::CollapseRule rule{.longest = INFINITY, .least_shape = 0};
@@ -299,7 +300,7 @@ void SurfaceMesher::run() {
   assert(complex_.consistent());
 }
 
-/// Removes vertices and moves those that stay, in turns, as long as each turn removes at least one vertex in
+/// Removes vertices and improves the triangles that stay; again if this removed more than one vertex in
 /// `few`.
 void SurfaceMesher::remove_needless_vertices() {
   constexpr unsigned rounds = 2;
@@ -313,8 +314,8 @@ void SurfaceMesher::remove_needless_vertices() {
   }
 }
 
-/// Moves a vertex to its place on the exact geometry, unless an angle would fall below its bound or, if it
-/// was below before, below its old value.
+/// Moves a vertex to its place on the exact geometry, unless a triangle's shape would fall below its bound
+/// or, if it is below its bound already, decrease.
 bool SurfaceMesher::project_vertex(Index vertex, const Point& target) {
   const Point before = complex_.vertices[vertex].point;
   std::vector<double> least;

@@ -29,10 +29,11 @@ class SurfaceMesher {
   /// Runs all steps. Ends early if the execution is cancelled.
   void run();
 
-  /// Moves vertices onto the exact geometry, as far as the angles permit. Precondition: run() was called.
+  /// Moves vertices onto the exact geometry, as far as the angles permit. The mesh may then use the share
+  /// `most_excess` of the tolerance. Precondition: run() was called.
   ProjectReport project(const ExactGeometry& exact, double most_excess);
 
-  /// Returns the mesh, with triangles oriented like their patches. Its vertices get new numbers.
+  /// Returns the mesh, with triangles oriented like their patches. Precondition: it was not called before.
   TetMesh mesh();
 
   /// Returns the place of a patch nearest to p, for mid-edge nodes.

@@ -22,6 +22,7 @@ class SurfaceSizes {
     return sizing_.triangle_size(patch, triangle, p);
   }
   /// Returns the target edge length on a curve, considering the lengths of the curves at its ends.
+  /// `parameter`: the arc length.
   double on_curve(Index curve, double parameter) const;
   double at_vertex(Index vertex) const { return at_vertex_[vertex]; }
   /// Returns the edge length that the options ask for on a curve, without regard to the lengths of curves.

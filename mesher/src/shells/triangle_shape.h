@@ -18,8 +18,8 @@ inline constexpr double least_angle = 20, wanted_shape = 28;
 
 inline Vector area_vector(const Corners& t) { return 0.5 * cross(t[1] - t[0], t[2] - t[0]); }
 
-/// Returns the angle of the vector (x, y), y >= 0, in degrees, with an error below 0.001. Avoids the
-/// library's function, which would take most of the time.
+/// Returns the angle between the vector (x, y), y >= 0, and the x axis, in degrees, with an error below
+/// 0.001. Avoids `std::atan2`, which would take most of the time of `shape_of`.
 inline double angle_of(double x, double y) {
   const double u = std::fabs(x), z = u > y ? y / u : u / std::max(y, 1e-300), w = z * z;
   constexpr double degrees = 180 / std::numbers::pi;

@@ -5,9 +5,9 @@
 
 namespace collarmesh::shells {
 
-/// Orients the triangles of whole patches. Faces of a region point out of it; faces of an open surface agree
-/// with their neighbours across edges of two triangles, as far as the surface is orientable. The first patch
-/// of each surface keeps its orientation.
+/// Turns patches over so that faces of a region point out of it, and patches of an open surface agree with
+/// their neighbours across curves where two triangles meet, as far as the surface is orientable. The first
+/// patch of each open surface keeps its orientation.
 void turn_patches(TetMesh& mesh, const Plc& plc);
 
 }  // namespace collarmesh::shells

@@ -60,8 +60,8 @@ bool VertexRemoval::acceptable(const SurfaceEditor::Surroundings& before, double
   return true;
 }
 
-/// Removes a vertex and moves its former neighbours to places where the shapes are good; puts all back if
-/// they are not good there.
+/// Removes a vertex and moves its former neighbours to improve the shapes. Restores everything and returns
+/// false if the shapes do not become good.
 bool VertexRemoval::remove_and_move(Index vertex, const SurfaceEditor::Filling& filling, double least_shape) {
   constexpr unsigned rounds = 3;
   const SurfaceEditor::Surroundings before = editor_.surroundings(vertex);
@@ -79,7 +79,7 @@ bool VertexRemoval::remove_and_move(Index vertex, const SurfaceEditor::Filling& 
 }
 
 bool VertexRemoval::remove(Index vertex) {
-  constexpr double least_before_moves = 0.6;  // relative to the least shape afterwards
+  constexpr double least_before_moves = 0.6;  // relative to the least shape that is required after moves
   const double least_shape = least_shape_beside(vertex);
   const auto filling =
       editor_.filling_without(vertex, {.longest = longest, .least_shape = least_before_moves * least_shape});

@@ -17,7 +17,7 @@ class VertexRemoval {
                 const Execution& execution);
 
   /// Tries to remove each vertex once, those with the shortest edges first. Returns the number of removed
-  /// ones. Call it again after other changes: it considers only vertices whose triangles have changed.
+  /// vertices. A later call tries only vertices whose triangles have changed since.
   std::size_t run();
 
  private:

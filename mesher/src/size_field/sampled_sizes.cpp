@@ -37,7 +37,7 @@ class Grid {
   }
   void set_sizes(std::vector<double> sizes) { sizes_ = std::move(sizes); }
 
-  /// A cell: the indices of its lowest corner, and the position of a place in it, in lengths of its sides.
+  /// A cell: the indices of its lowest corner, and the coordinates of a point in it, from 0 to 1.
   struct Cell {
     Counts at;
     std::array<double, 3> shares;

@@ -1,4 +1,4 @@
-// Reads a size field from a description.
+// Reads a size field from its description in JSON.
 #include "collarmesh/size_field.h"
 
 #include <fmt/format.h>
@@ -220,7 +220,8 @@ SizeField size_field_from_json(const std::string& text, const Plc& plc,
   for (std::size_t i = 0; i < list.size(); ++i) {
     const std::string place = fmt::format("sources[{}]", i);
     if (std::ranges::count_if(kinds, [&](const auto& kind) { return list[i].contains(kind); }) > 1)
-      fail(place, fmt::format("expected only one of {}; make it several sources", fmt::join(kinds, ", ")));
+      fail(place, fmt::format("expected only one of {}; give each of them a source of its own",
+                              fmt::join(kinds, ", ")));
     std::vector<std::string> keys(kinds.begin(), kinds.end());
     keys.insert(keys.end(), {"size", "growth", "within"});
     allow_only(list[i], place, keys);

@@ -40,7 +40,8 @@ std::string internal_patches(const TagNames& names, const std::vector<Candidate>
 /// The internal patches that the options name.
 class PatchChoice {
  public:
-  /// Finds the patches. Throws OptionError for a name that no internal patch has.
+  /// Finds the patches. Throws OptionError for a name that no internal patch has, and if regions are to be
+  /// kept apart but none touch.
   PatchChoice(const SplitOptions& options, const TagNames& names, const std::vector<Candidate>& all)
       : keep_apart_(options.keep_apart) {
     for (const std::string& text : options.patches) {
@@ -239,7 +240,7 @@ class Splitter {
     }
   }
 
-  /// Gives the sides numbers and names.
+  /// Gives both sides of each split patch a tag and a name.
   void number_sides() {
     std::set<Tag> taken, kept;
     for (Index f = 0; f < mesh_.faces.size(); ++f) {
@@ -357,11 +358,11 @@ class Splitter {
 
   TetMesh& mesh_;
   const SplitOptions& options_;
-  FaceFinder finder_;                          // finds faces before the split by corners
+  FaceFinder finder_;                          // faces before the split, by their corners
   std::vector<std::array<Index, 4>> tets_;     // after the split
   std::vector<std::array<Index, 6>> mids_;     // after the split
-  std::vector<bool> chosen_;                   // by face
-  std::vector<bool> marked_;                   // nodes of chosen faces
+  std::vector<bool> chosen_;                   // by face before the split: whether it is split
+  std::vector<bool> marked_;                   // by node: whether it is a node of a chosen face
   std::vector<Beside> beside_;                 // by face with a marked corner: the tets beside it
   std::vector<Index> copies_;                  // by node: the number of its copies
   std::map<Tag, SplitReport::Patch> patches_;  // by tag before the split

@@ -71,7 +71,8 @@ class PatchCurvature {
     return points_[entry->second];
   }
 
-  // Adds an edge. The edge's bend is known when it is added for its second triangle.
+  // Adds an edge of a triangle with the unit normal n. The bend of the edge is known, and added to its ends,
+  // when the second triangle at the edge comes.
   void add_edge(Index a, Index b, const Vector& n) {
     const auto [entry, fresh] = normal_at_.try_emplace(edge_key(a, b), n);
     if (fresh) return;

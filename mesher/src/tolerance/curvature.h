@@ -21,12 +21,12 @@ std::vector<Curvature> curvatures(const Plc& plc, const Plc::Patch& patch);
 /// Target edge lengths, absolute, with which N elements make a full circle of the local curvature.
 struct CurvatureSizes {
   std::vector<double> triangle;  ///< size at every triangle of the complex; infinite where flat
-  std::vector<std::vector<double>> curve_segment;  ///< by curve: size at every segment; none if straight
+  std::vector<std::vector<double>> curve_segment;  ///< by curve: size at every segment; empty if straight
 };
 
-/// Returns the sizes. For a triangle of a smooth patch the larger principal curvature counts. For a segment
-/// of a curve, the larger curvature of its two ends counts: the angle by which the polyline turns at the end,
-/// divided by the mean length of the two segments there. Cost: linear.
+/// Returns the sizes. For a triangle of a smooth patch, the larger principal curvature counts. For a segment
+/// of a curve, the larger of the curvatures at its two ends counts. The curvature at a point of the curve is
+/// the angle by which the polyline turns there, divided by the mean length of its two segments. Cost: linear.
 CurvatureSizes curvature_sizes(const Plc& plc, double elements_per_circle);
 
 }  // namespace collarmesh

@@ -12,8 +12,8 @@ namespace collarmesh {
 std::vector<std::array<Index, 3>> corners_of_triangles(const Plc& plc);
 /// Returns whether two patches are the same, or have a curve or a vertex in common.
 bool are_neighbours(const Plc& plc, Index patch, Index other);
-/// Returns the least cosine between a direction and a surface's normal at which the surface faces that
-/// direction. The least cosine is larger between neighbouring patches, because they may form a wedge.
+/// Returns the least cosine of the angle between a direction and a surface's normal at which the surface
+/// faces that direction. It is larger between neighbouring patches, because they may form a wedge.
 double least_facing(bool neighbours);
 
 /// Returns the distance from a point x of a patch to the plane of a triangle, along a unit normal of the

@@ -32,7 +32,7 @@ double narrowness_of(const std::array<Point, 4>& p, const Forces& forces) {
 /// sides of a thin wall, at a step or at a strip, no tet there can have both long edges and large angles.
 class ForcedEdges {
  public:
-  /// The certificate's bound on the cosine between normals: they may be up to some 25 degrees from opposite.
+  /// The certificate's `least_cosine`: normals up to 26 degrees from opposite count as opposite.
   static constexpr double least_cosine_of_sides = -0.9;
 
   /// Finds the edges between the current vertices. Keeps a reference to the complex. `features`: by point,
@@ -55,7 +55,7 @@ class ForcedEdges {
  private:
   FeatureContacts contacts_;
   std::vector<TetMesh::VertexFeature> features_;
-  std::vector<Vector> normals_;  // by vertex on a patch: unit normals of the mesh
+  std::vector<Vector> normals_;  // by vertex inside a patch: unit normal of the mesh there
   double least_cosine_;
 };
 

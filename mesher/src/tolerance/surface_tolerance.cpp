@@ -21,12 +21,13 @@ namespace collarmesh {
 
 namespace {
 
-// The largest distance from the surface, relative to the thickness of the material where its opposite sides
-// bend away from each other (a rod) and where they bend the same way (a shell), and relative to the width of
-// gaps in the same two cases (a hole and a slot). doc/architecture/tolerance.md has the measurements.
+// The tolerance relative to the thickness of the material: in a rod, where opposite sides bend away from each
+// other, and in a shell, where they bend the same way. Then the tolerance relative to the width of a gap: in
+// a hole and in a slot, which bend like a rod and a shell. doc/architecture/tolerance.md has the
+// measurements.
 constexpr double share_of_rod = 0.05, share_of_shell = 0.15, share_of_hole = 0.1, share_of_slot = 0.5;
-// Share of a region's volume that chords may remove or add, by the estimate below. Where chords would change
-// the volume by less, the shares of thickness are multiplied by up to `largest_factor`.
+// Share of a region's volume that chords may remove or add, as `volume_of` estimates. The shares of thickness
+// are multiplied by the factor with which chords reach this share, but by at most `largest_factor`.
 constexpr double share_of_volume = 0.015, largest_factor = 2;
 // If chords would remove at least the share `much_of_wedge` of the volume below a patch in a wedge, the
 // tolerance there is lowered so that they remove about `share_of_wedge`.
@@ -120,8 +121,8 @@ class LocalTolerance {
   }
 
   // Keeps the volume of wedges. Where a patch and the opposite side of a thin place meet in a crease, a
-  // tolerance that is a share of the thickness would go to zero towards the crease. So the share of the
-  // volume below the patch that chords remove is limited there instead.
+  // tolerance that is a share of the thickness would go to zero towards the crease. There, the tolerance
+  // instead limits the share of the volume below the patch that chords remove.
   void keep_wedges() {
     std::vector<double> at_points(plc_.points.size(), INFINITY);
     bool any = false;
@@ -156,7 +157,8 @@ class LocalTolerance {
     return largest_ * std::max(share_of_wedge * volume / lost, least_share_in_wedges);
   }
 
-  // Lowers values at points until they grow along edges of triangles by at most `slope_beside_wedges`.
+  // Lowers values at points until, along edges of triangles, they grow by at most `slope_beside_wedges` per
+  // unit of length.
   void grow(std::vector<double>& at_points) const {
     using Item = std::pair<double, Index>;
     std::priority_queue<Item, std::vector<Item>, std::greater<>> next;
@@ -309,8 +311,8 @@ SurfaceTolerance::SurfaceTolerance(const Plc& plc, std::vector<double> triangles
 
 namespace {
 
-// Returns the largest distance of a smooth patch's triangles from its surface, as estimated from the angles
-// between them, relative to the distance that `coarse_patches` allows.
+// Estimates the largest distance of a smooth patch's triangles from the curved surface that they approximate,
+// from the angles between them. Returns it relative to the distance that `coarse_patches` allows.
 double coarseness(const Plc& plc, const Plc::Patch& patch, const SurfaceTolerance& tolerance) {
   constexpr double share_of_triangles = 0.25;
   struct Side {

@@ -17,8 +17,8 @@ class Thickness {
   /// Keeps the complex by reference. Cost: near linear in the triangles.
   explicit Thickness(const Plc& plc);
 
-  /// A ray from the centre of a triangle along its smooth normal. That triangle's patch is the ray's first
-  /// patch.
+  /// A ray from the centre of a triangle along its smooth normal or against it. The triangle's patch is the
+  /// ray's first patch.
   struct Ray {
     Point from;
     Vector way;  ///< unit vector; zero if the normal is unknown
@@ -30,9 +30,9 @@ class Thickness {
     double facing = 0;      ///< absolute cosine of the angle between the ray and that triangle's normal
   };
   struct Opposites {
-    Opposite apart;         ///< nearest such triangle that is not at a slant, of a patch that does not
+    Opposite apart;         ///< nearest opposite triangle that is not at a slant, of a patch that does not
                             ///< meet the ray's first patch in a crease
-    Opposite first;         ///< nearest such triangle, of any patch and at any angle to the ray
+    Opposite first;         ///< nearest opposite triangle, of any patch and at any angle to the ray
     bool is_wedge = false;  ///< whether the patch of `first` meets the ray's first patch in a crease
   };
   /// Scratch space of a thread.

@@ -17,16 +17,16 @@
 #include "collarmesh/tet_mesh.h"
 
 /// Meshes on many MPI ranks, stored in PETSc's DMPlex. Everything here is collective: all ranks of the
-/// communicator must call it. If one rank throws, all ranks throw, with the message of the first of them. The
-/// caller must have initialized PETSc. Meshes do not depend on the number of ranks, except for the order of
-/// their cells and points.
+/// communicator must call it. If some ranks throw, all ranks throw, with the message of the first of these.
+/// The caller must have initialized PETSc. Meshes do not depend on the number of ranks, except for the order
+/// of their cells and points.
 namespace collarmesh::distributed {
 
 /// The shape that the mesh approximates. Every rank must have it. Keeps a reference to the complex.
 struct Shape {
   const Plc& plc;
-  ExactGeometry exact;  ///< where this is empty or returns no point, the polylines and triangles of the
-                        ///< complex take its place
+  ExactGeometry exact;  ///< if this is empty or returns no point, the polylines and triangles of the complex
+                        ///< take its place
   double distance = 0;  ///< surface distance tolerance, absolute, input units
 };
 
@@ -46,8 +46,7 @@ struct LevelReport {
   std::int64_t tets = 0;         ///< tets after the refinement
   std::int64_t on_features = 0;  ///< vertices with a place on a smooth or exact feature
   std::int64_t spoilt = 0;       ///< tets that were invalid or poor after these vertices were placed
-  std::int64_t made_room = 0;    ///< number of moves that made room, of vertices inside regions, in planes
-                                 ///< and along straight curves
+  std::int64_t made_room = 0;    ///< number of moves, inside regions or along features, that made room
   std::int64_t drawn_back = 0;   ///< vertices that did not reach their place
   double farthest_off = 0;       ///< largest distance of these vertices from their places, absolute
   double seconds = 0;            ///< time of the slowest rank
@@ -55,7 +54,8 @@ struct LevelReport {
 
 /// The result of `raise_order`, summed over all ranks.
 struct OrderReport {
-  std::int64_t nodes = 0, curved = 0, straightened = 0;  ///< mid-edge nodes
+  std::int64_t nodes = 0, curved = 0, straightened = 0;  ///< mid-edge nodes: all, those off the middles of
+                                                         ///< their edges, those drawn back from the shape
   double farthest_off = 0;                               ///< largest distance of straightened nodes from
                                                          ///< their places, absolute
 };
@@ -73,7 +73,7 @@ struct Certificate {
   std::int64_t findings_total = 0;                            ///< number of findings, listed or not
   std::int64_t tets = 0, vertices = 0, faces = 0, edges = 0;  ///< faces on patches, edges on curves
   AngleBounds angles;
-  double largest_distance = 0;  ///< largest distance of vertices from their smooth patches and curves
+  double largest_distance = 0;  ///< largest distance of nodes from their smooth patches and curves
   std::map<Tag, double> region_volumes, patch_areas, curve_lengths;
   std::vector<std::int64_t> tets_of_ranks;  ///< by rank
   /// A hash of all cells with their labels and exact coordinates, independent of their order: equal for equal
@@ -101,9 +101,9 @@ class ParallelMesh {
   ParallelMesh& operator=(const ParallelMesh&) = delete;
 
   /// Cuts every tet into eight by Bey's rule; the first refinement chooses the inner diagonal with the best
-  /// angles. Moves the vertices on features onto the shape. If that spoils tets, vertices inside
-  /// regions and on planar or straight features move to make room; if that does not help, vertices on smooth
-  /// or exact features move back. Precondition: first order.
+  /// angles. Moves the vertices on features onto the shape. If that spoils tets, vertices move to make room,
+  /// inside regions or along their features; if that does not help, vertices on smooth or exact features move
+  /// back. Precondition: first order.
   LevelReport refine(const Shape& shape);
 
   /// Adds a mid-edge node to every edge, on the shape if the edge is on a feature, so that every tet is valid

@@ -15,10 +15,10 @@ namespace collarmesh::io {
 /// length of the regular tetrahedron of volume v, (6 sqrt 2 v)^(1/3).
 PolygonSoup read_soup(const std::string& path, std::string_view format = {});
 
-/// Writes a surface or PLC by the extension or format. Only .poly holds facets of several polygons or with
-/// holes, and only .poly and .smesh hold region and hole points; .stl holds triangles with 32-bit
-/// coordinates.
-/// `merge_soups` cuts facets as a format needs it. Throws WriteError.
+/// Writes a surface or PLC by the extension of `path`, or as `format` says. Only .poly holds facets of
+/// several polygons or with holes, and only .poly and .smesh hold region and hole points; .stl holds
+/// triangles with 32-bit coordinates. Cut facets with `merge_soups` first if the format cannot hold them.
+/// Throws WriteError.
 void write_soup(const std::string& path, const PolygonSoup& soup, std::string_view format = {});
 
 /// Returns whether `read_soup` and `write_soup` know this extension or format.

@@ -104,7 +104,7 @@ class CgnsFile : public Hdf5File {
     const Handle attribute(H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
     require(attribute >= 0 && H5Awrite(attribute, type, value) >= 0);
   }
-  /// Sets an attribute; attributes have a fixed size.
+  /// Sets an attribute of a fixed `size`; zeros fill the space after the text.
   void set_text(hid_t object, const char* name, std::string text, std::size_t size) const {
     text.resize(size + 1, '\0');
     const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
@@ -151,7 +151,8 @@ void name_families(std::vector<Section>& sections) {
   }
 }
 
-/// Returns a section for each kind of cells in each group: a region, or a tag of patches or curves.
+/// Returns a section for each kind of cells in each group. A group is a region, a tag of patches or a tag of
+/// curves.
 std::vector<Section> sections_of(const TetMesh& mesh) {
   std::map<std::pair<Index, CellKind>, std::vector<Index>> regions;
   std::array<std::map<std::pair<Tag, CellKind>, std::vector<Index>>, 3> tagged;  // by dimension

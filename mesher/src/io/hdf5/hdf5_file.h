@@ -12,7 +12,7 @@
 
 namespace collarmesh::io {
 
-/// Returns HDF5's type of numbers in memory.
+/// Returns HDF5's identifier for a C++ type of numbers.
 template <class Number>
 hid_t native_type() {
   if constexpr (std::is_same_v<Number, char>) {
@@ -47,7 +47,7 @@ class Handle {
   herr_t (*close_)(hid_t);
 };
 
-/// An HDF5 file that appears under its name when it is complete.
+/// An HDF5 file that appears under its name when it is complete, or not at all.
 class Hdf5File {
  public:
   explicit Hdf5File(std::string path, hid_t properties = H5P_DEFAULT) : target_(std::move(path)) {
@@ -76,7 +76,7 @@ class Hdf5File {
     target_.commit();
   }
 
-  /// Throws WriteError unless a step has succeeded.
+  /// Throws WriteError if `done` is false.
   void require(bool done) const {
     if (!done) target_.fail(0);
   }

@@ -130,7 +130,7 @@ void write_med(const std::string& path, const TetMesh& mesh) {
   file.create_mesh();
   file.write_points(mesh.points);
   for (const MedType& type : med_types) file.write_cells(type);
-  if (!mesh.tet_partition.empty()) {  // on all cells, because meshio reads no field that some lack
+  if (!mesh.tet_partition.empty()) {  // on all cells: meshio reads no field that some cells lack
     const bool second = mesh.order() == 2;
     file.create_partitions();
     file.write_partitions(mesh.tet_partition, second ? MED_TETRA10 : MED_TETRA4);

@@ -5,8 +5,8 @@
 
 namespace {
 
-/// Keeps HDF5 from retrying, at the end of the program, to write files that could not be written, because it
-/// would crash. All other files are closed by then. Works only before the first use of HDF5.
+/// Keeps HDF5 from retrying, at the end of the program, to write files that could not be written, because the
+/// attempt would crash. All other files are closed by then. The call works only before the first use of HDF5.
 const herr_t no_work_at_the_end = H5dont_atexit();
 
 }  // namespace

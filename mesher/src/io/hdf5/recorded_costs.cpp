@@ -1,4 +1,4 @@
-// The module records no costs: its parallel parts are few, and the program writes the table.
+// The module records no costs: its parallel parts are few, and only the program writes the table of costs.
 #include "common/recorded_costs.h"
 
 namespace collarmesh::recorded_costs {

@@ -73,7 +73,7 @@ class Grid {
     return values;
   }
 
-  /// Adds the cells and their data.
+  /// Adds the grid's cells and their data to `piece`.
   void append(VtkPiece& piece) const {
     const auto nodes = read<std::int64_t>(grid_.child("Topology").child("DataItem"));
     const std::size_t of_cell = shape_of(kind_).nodes(order_);
@@ -185,7 +185,7 @@ TetMesh read_xdmf(const std::string& path) {
     std::error_code ignored;
     if (!fs::exists(beside, ignored)) continue;
     const Grid grid(beside.string());
-    if (grid.coordinates() == coordinates) grid.append(piece);  // other points: a grid of another mesh
+    if (grid.coordinates() == coordinates) grid.append(piece);  // otherwise it is of another mesh
   }
   TetMesh mesh;
   try {

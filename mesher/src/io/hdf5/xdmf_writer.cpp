@@ -37,7 +37,7 @@ struct Cells {
   std::string_view topology;  ///< XDMF's name of the kind of cells
   std::size_t first, count;   ///< range among all cells of the grid
   std::vector<std::int64_t> nodes;
-  std::vector<std::string_view> arrays;  ///< arrays of these cells; dolfinx takes the first one for tags
+  std::vector<std::string_view> arrays;  ///< names of arrays; dolfinx takes the first array for tags
 };
 
 std::vector<Cells> cells_by_dimension(const TetMesh& mesh) {
@@ -127,7 +127,8 @@ class GridFile {
   FileWriter out_;
 };
 
-/// Returns the names of tags that have one, in the form of meshio's field data.
+/// Returns the tags whose names are not made of dimension and tag (patch_7), with their names, in the form of
+/// meshio's field data.
 std::string names_information(const TetMesh& mesh) {
   std::string maps;
   const auto add = [&](std::size_t dimension, const std::vector<Tag>& tags) {
@@ -143,8 +144,8 @@ std::string names_information(const TetMesh& mesh) {
   return fmt::format("<Information Name=\"names\"><![CDATA[<main>{}</main>]]></Information>\n", maps);
 }
 
-/// Returns NAME.xdmf for the tetrahedra, or for triangles without tetrahedra, and NAME_faces.xdmf and
-/// NAME_edges.xdmf for the others.
+/// Returns NAME.xdmf for the cells of the mesh's highest dimension, and NAME_faces.xdmf or NAME_edges.xdmf
+/// for other cells.
 std::filesystem::path path_of(const std::filesystem::path& path, const Cells& cells) {
   if (cells.first == 0 && cells.name == "mesh") return path;
   return path.parent_path() /

@@ -11,10 +11,11 @@
 
 namespace collarmesh::openmesh_io {
 
-/// A selection of triangles of a tetrahedral mesh. Regions are TetMesh::tet_region, 0 is the outside.
+/// A selection of triangles of a tetrahedral mesh, by their regions. Regions have the numbers in
+/// TetMesh::tet_region; 0 is the outside.
 struct SurfaceSelection {
-  /// The regions behind and in front of the selected triangles, after a triangle is reversed if necessary.
-  /// `any` stands for any region.
+  /// The regions behind and in front of a selected triangle; a triangle that fits only when reversed is
+  /// reversed. `any` stands for every region and for the outside.
   Index back = any, front = 0;
   static constexpr Index any = none;
 
@@ -26,12 +27,12 @@ struct SurfaceSelection {
   static SurfaceSelection interface(Index back, Index front) { return {back, front}; }
 };
 
-/// Selected triangles in a form that OpenMesh can represent: around each vertex they form one fan. Vertices
-/// are copied if more than two triangles meet in an edge, or several fans in a vertex.
+/// Selected triangles in a form that OpenMesh can represent: around each vertex they form one fan. A vertex
+/// is copied if several fans meet there, or at edges where more than two triangles meet.
 struct SelectedSurface {
   std::vector<Index> points;                       ///< index in TetMesh::points, by vertex
-  std::vector<std::array<Index, 3>> triangles;     ///< three vertices each; all but the first of a component
-                                                   ///< share an edge with an earlier triangle
+  std::vector<std::array<Index, 3>> triangles;     ///< three vertices each; each triangle except the first of
+                                                   ///< a component shares an edge with an earlier one
   std::vector<Index> faces;                        ///< index in TetMesh::faces, by triangle
   std::vector<std::array<Index, 2>> face_regions;  ///< regions behind and in front, by triangle
   struct Edge {
@@ -45,10 +46,11 @@ struct SelectedSurface {
 /// Selects triangles. Throws OptionError for a selection without triangles.
 SelectedSurface select_surface(const TetMesh& mesh, const SurfaceSelection& selection);
 
-/// Returns a surface of a tetrahedral mesh as an OpenMesh mesh of any traits. Its properties are those of
-/// properties.h, and edges on curves have the feature bit in their status. `to_plc` turns it back into the
-/// complex it came from: copied vertices are welded, tags kept. Precondition: the mesh has its boundary
-/// triangles, as meshes from `generate` do. Throws OptionError for a selection without triangles.
+/// Returns the selected surface of a tetrahedral mesh as an OpenMesh mesh of any traits. It has the
+/// properties of properties.h except `vertex_tag`, and edges on curves have the feature bit in their status.
+/// `to_plc` makes a complex of it again: it welds copied vertices and keeps tags. Precondition: the mesh has
+/// its boundary triangles, as meshes from `generate` do. Throws OptionError for a selection without
+/// triangles.
 template <class Mesh>
 Mesh boundary_surface(const TetMesh& mesh, const SurfaceSelection& selection = SurfaceSelection::boundary()) {
   const SelectedSurface surface = select_surface(mesh, selection);

@@ -12,8 +12,8 @@
 
 namespace collarmesh::openmesh_io {
 
-// Names of properties. `boundary_surface` writes all but `vertex_tag`; `Surfaces::add` reads the three tags
-// by default. Tags are std::int64_t.
+// Names of properties. `boundary_surface` writes all of them except `vertex_tag`; `Surfaces::add` reads the
+// three tags unless its options name other properties. Tags are std::int64_t.
 inline constexpr const char* patch_tag = "collarmesh:patch_tag";      ///< face property
 inline constexpr const char* curve_tag = "collarmesh:curve_tag";      ///< edge property
 inline constexpr const char* vertex_tag = "collarmesh:vertex_tag";    ///< vertex property
@@ -26,7 +26,7 @@ inline constexpr const char* mesh_face = "collarmesh:mesh_face";
 
 namespace detail {
 
-/// A property with integers of one of several types, found by its name.
+/// A property whose values have one of several integer types. It is found by its name.
 template <class Mesh, template <class> class Handle>
 class TagProperty {
  public:
@@ -43,7 +43,7 @@ class TagProperty {
 
   explicit operator bool() const { return handle_.index() != 0; }
 
-  /// Precondition: there is a property.
+  /// Returns the value of an entity. Precondition: there is a property.
   template <class Entity>
   Tag operator[](Entity entity) const {
     assert(static_cast<bool>(*this));

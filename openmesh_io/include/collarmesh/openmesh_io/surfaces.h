@@ -15,33 +15,35 @@
 
 namespace collarmesh::openmesh_io {
 
-/// Options for reading an OpenMesh mesh. Properties are of type int, unsigned, std::int64_t or std::uint64_t
-/// and have the names given here. A missing property throws OptionError, unless its name is the default.
+/// Options for reading an OpenMesh mesh. Members that end in `_property` name properties of type int,
+/// unsigned, std::int64_t or std::uint64_t; an empty name stands for none. A missing property throws
+/// OptionError, unless its name is the default.
 struct SurfaceOptions {
   std::string name = {};           ///< name in messages
-  std::optional<Tag> region = {};  ///< tag of the regions inside this surface; none: their numbers
-  /// Face property: faces with the same value form a separate surface, and the value becomes the tag of its
-  /// regions; empty: one surface.
+  std::optional<Tag> region = {};  ///< tag of the regions inside this surface; none: numbers as tags
+  /// Face property: faces with the same value form a separate surface, whose regions get the value as their
+  /// tag; empty: all faces form one surface.
   std::string region_property = {};
   std::string patch_property = patch_tag;  ///< face property: tag of the patch
   /// Edge property: an edge with a value other than 0 is on a curve with this tag.
   std::string curve_property = curve_tag;
-  /// Vertex property: where it is not 0, the vertex becomes a feature with this tag.
+  /// Vertex property: a vertex with a value other than 0 is a feature with this tag.
   std::string vertex_property = vertex_tag;
   bool feature_edges = true;  ///< edges with the feature bit of their status are curves
 };
 
-/// Counts of the contents of an OpenMesh mesh. None of them is an error by itself: `build_plc` decides.
+/// Counts of the contents of an OpenMesh mesh. No count is an error by itself: `build_plc` decides whether it
+/// can use the surface.
 struct SurfaceReport {
   std::string name;
   std::size_t faces = 0;                  ///< faces used
-  std::size_t deleted_faces = 0;          ///< faces that are marked as deleted but not collected yet: left
+  std::size_t deleted_faces = 0;          ///< faces that are marked as deleted but still stored: left
                                           ///< out
   std::size_t isolated_vertices = 0;      ///< vertices without a face: left out
   std::size_t non_manifold_vertices = 0;  ///< vertices where several fans of faces meet
   std::size_t border_edges = 0;           ///< edges with one face; coincident ones are welded
-  /// Faces to which OpenMesh gave separate vertices, because it cannot represent an edge or vertex there;
-  /// they are welded to their neighbours again.
+  /// Faces to which OpenMesh gave vertices of their own, because it cannot represent a non-manifold edge or
+  /// vertex there. `to_plc` welds them to their neighbours again.
   std::size_t detached_faces = 0;
 };
 
@@ -52,7 +54,7 @@ struct SurfacesPlc {
   std::vector<std::string> notes;
 };
 
-/// A collector of OpenMesh meshes, also of different types, for one complex.
+/// A collector of OpenMesh meshes, possibly of different types, from which it builds one complex.
 class Surfaces {
  public:
   /// Adds a TriMesh or PolyMesh of any traits. Does not change the mesh, and keeps no reference to it. Throws

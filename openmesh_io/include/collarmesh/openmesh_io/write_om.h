@@ -7,8 +7,9 @@
 namespace collarmesh::openmesh_io {
 
 /// Writes a surface in OpenMesh's own format (.om), in double precision. The format cannot store tags and
-/// segments. Throws WriteError, also for data that OpenMesh cannot represent: facets with holes or of several
-/// polygons, and edges of more than two faces.
+/// segments. Throws WriteError if writing fails, and for data that OpenMesh cannot represent: facets with
+/// holes, several polygons or a repeated corner, edges of more than two faces, and neighbouring faces that
+/// are oriented inconsistently.
 void write_om(const std::string& path, const PolygonSoup& soup);
 
 }  // namespace collarmesh::openmesh_io

@@ -10,8 +10,8 @@ namespace collarmesh::brep {
 
 enum class CadFormat { brep, step, iges, other };
 
-/// Returns the format that an extension (any case) stands for: `format`, such as ".step", or the path's
-/// extension if `format` is empty.
+/// Returns the format of files with an extension (in upper or lower case). The extension is `format`, such as
+/// ".step", or, if that is empty, the extension of the path.
 inline CadFormat cad_format_of(const std::string& path, std::string_view format = {}) {
   std::string extension =
       format.empty() ? std::filesystem::path(path).extension().string() : std::string(format);

@@ -15,8 +15,8 @@
 
 class TopoDS_Shape;
 
-/// CAD shapes: boundary representations of OpenCASCADE, from files or in the memory of any program. Knows
-/// nothing of FreeCAD. Lengths are millimetres.
+/// CAD shapes: boundary representations of OpenCASCADE, from files or from the memory of a program. This code
+/// does not depend on FreeCAD. Lengths are in millimetres.
 namespace collarmesh::brep {
 
 /// The owner of the common part of several solids.
@@ -48,25 +48,26 @@ struct CadMeasure {
 /// for it.
 struct CadMeasures {
   std::map<Tag, CadMeasure> lengths, areas;        ///< by the numbers of edges and faces
-  std::vector<std::optional<CadMeasure>> volumes;  ///< by soup: the volume that it bounds
+  std::vector<std::optional<CadMeasure>> volumes;  ///< by soup: the volume inside; nothing if it is open
 };
 
-/// The solids of a shape, with the faces that belong to none, and the edges and vertices inside that belong
-/// to no face. Its sub-shapes are numbered from 1 in the order of TopExp::MapShapes; a face's tag is its
-/// number. Solids that touch are changed so that they share faces there. Pieces of faces and edges that are
-/// cut for this keep the number of the original; new edges get the next free numbers. The common part of
-/// several solids is given to one of them, or to a new region (`CadOptions::overlap`). Edges that belong to
-/// no face are split where they meet faces or one another. Pieces that lie outside the solids, on faces, or
-/// too near to faces or to one another are left out; notes list these. A shape of faces alone is sewn and
-/// becomes a solid if it is closed; the same happens to the faces of an open solid. Failures of OpenCASCADE
-/// are listed in `notes`, and the builder of the complex must handle them: solids that cannot be fused may
-/// intersect, solids that stay open have holes, and a face that cannot be triangulated together with its
-/// neighbours may have points along its edges that its neighbours lack, or may be missing. The functions are
-/// virtual, so that a program without OpenCASCADE can use a model that the module has made (module.cpp).
+/// The solids of a shape, the faces that belong to no solid, and the edges and vertices inside solids that
+/// belong to no face. Sub-shapes of each kind are numbered from 1 in the order of TopExp::MapShapes; a face's
+/// tag is its number. Solids that touch are changed so that they share faces there. Pieces of faces and edges
+/// that are cut for this keep the number of the original; new edges get the next free numbers. The common
+/// part of several solids is given to one of them, or to a new region (`CadOptions::overlap`). Edges that
+/// belong to no face are split where they meet faces or one another. Their pieces that lie outside the
+/// solids, on faces, or too near to faces or to one another are left out; notes list these pieces. A shape of
+/// faces alone is sewn and becomes a solid if it is closed; the faces of an open solid are sewn, too.
+/// Failures of OpenCASCADE are listed in `notes`, and the builder of the complex must handle them: solids
+/// that cannot be fused may intersect, solids that stay open have holes, and a face that cannot be
+/// triangulated together with its neighbours may be missing, or may have points along its edges that its
+/// neighbours lack. The functions are virtual, so that a program without OpenCASCADE can use a model that the
+/// module has made (module.cpp).
 class CadModel {
  public:
-  /// Makes a model. `labels` are those of the shape's sub-shapes. Throws PlcError for a shape without solids,
-  /// faces and edges. The result does not depend on the number of cores.
+  /// Makes a model. `labels` are those of the shape's sub-shapes. Throws PlcError for a shape without faces
+  /// and edges. The result does not depend on the number of cores.
   CadModel(const TopoDS_Shape& shape, std::string name, const CadOptions& options = {},
            CadLabels labels = {});
   virtual ~CadModel();
@@ -80,23 +81,24 @@ class CadModel {
   /// Triangulates all faces. Returns one soup for each solid, then, if there are any, one for the faces that
   /// belong to no solid, and one of chords and points for the edges and vertices inside solids that belong to
   /// no face. The number of soups does not depend on the options. Neighbouring faces share the points of
-  /// their edges. Vertices, edges and faces of the shape are features with their numbers as tags; seams and
-  /// degenerate edges are no features. Throws PlcError if OpenCASCADE fails, or no face can be triangulated.
+  /// their edges, except for faces that `notes` names. Vertices, edges and faces of the shape are features
+  /// with their numbers as tags; seams and degenerate edges are no features. Throws PlcError if OpenCASCADE
+  /// fails, or no face can be triangulated.
   virtual std::vector<PolygonSoup> tessellate(const TessellationOptions& options);
 
   /// Returns the changes to the shape (sewn faces, overlaps, mended faces, ...), as sentences.
   virtual std::vector<std::string> notes() const;
 
-  /// Returns faces that were merged where solids touch or were sewn: pairs of the number that is gone and the
-  /// number that replaces it.
+  /// Returns the numbers of faces that were merged (faces of touching solids, or by sewing): pairs of the
+  /// number that is gone and the number that replaces it.
   virtual const std::vector<std::pair<Tag, Tag>>& replaced_faces() const;
 
-  /// Returns false if solids that touch or overlap were left unchanged. Their soups then intersect, even with
-  /// fine triangles.
+  /// Returns false if solids that touch or overlap were left unchanged. Their soups may intersect then,
+  /// however fine the triangles are.
   virtual bool fused() const;
 
-  /// Returns text on which solids are open, at which edges and where, with a remedy; empty if all are closed.
-  /// It is for the message when no complex can be made of the soups.
+  /// Returns sentences that say which solids are open, at which edges and where, with a remedy; "" if all are
+  /// closed. If no complex can be made of the soups, the error message should contain them.
   virtual const std::string& open_edges_text() const;
 
   /// Returns the point of EdgeN (dimension 1), or of the surface of FaceN (dimension 2), that is nearest to
@@ -113,14 +115,14 @@ class CadModel {
   /// Returns the distance from a place to the nearest corner of the triangles. Precondition: tessellated.
   virtual double distance_to(const Point& where) const;
 
-  /// Returns lengths, areas and volumes, by integrals over the exact edges and faces; seams have none.
-  /// Precondition: tessellated. The first call integrates over all faces, which costs a small part of reading
-  /// the shape, and keeps the results. Not for several threads at once.
+  /// Returns lengths, areas and volumes of the exact shape, by integrals, and of its tessellation. Seams have
+  /// no lengths. Precondition: tessellated. The first call integrates over all faces, which costs a small
+  /// part of reading the shape, and keeps the results. Not for several threads at once.
   virtual CadMeasures measures() const;
 
-  /// Returns text on the first few sub-shapes that OpenCASCADE's own check finds invalid, with places; empty
-  /// if there are none or the check fails. Names only those of the lowest dimension, because shapes that
-  /// contain them are invalid, too.
+  /// Returns text on the first few sub-shapes that OpenCASCADE's own check finds invalid, with places; "" if
+  /// there are none or the check fails. Names only sub-shapes of the lowest dimension at which it finds any,
+  /// because shapes that contain invalid ones are invalid, too.
   virtual std::string invalid_parts() const;
 
   struct Parts;
