@@ -158,8 +158,12 @@ TEST(WindingNumber, LeavesOutAllTrianglesOfANumber) {
   for (int i = 0; i < 100; ++i) {
     const Vector direction = random_direction(random);
     for (const double radius : {0.5, 1.0, 1.5, 2.0, 2.5}) {
-      if (radius != 1) { EXPECT_NEAR(winding.at(radius * direction, 1), radius < 1 ? 1 : 0, 0.05); }
-      if (radius != 2) { EXPECT_NEAR(winding.at(radius * direction, 0), radius < 2 ? 1 : 0, 0.05); }
+      if (radius != 1) {
+        EXPECT_NEAR(winding.at(radius * direction, 1), radius < 1 ? 1 : 0, 0.05);
+      }
+      if (radius != 2) {
+        EXPECT_NEAR(winding.at(radius * direction, 0), radius < 2 ? 1 : 0, 0.05);
+      }
     }
   }
 }

@@ -26,8 +26,8 @@ class WindingNumber {
 
   /// Returns the winding number at a point, leaving out triangles with the number `left_out`. At a point on a
   /// triangle that is left out, the result is the mean of the winding numbers on the triangle's two sides.
-  /// Cost: O(log n) unless the surface is crumpled around the point; with a number that several triangles have,
-  /// also linear in the triangles among which these lie scattered.
+  /// Cost: O(log n) unless the surface is crumpled around the point; with a number that several triangles
+  /// have, also linear in the triangles among which these lie scattered.
   double at(const Point& p, Index left_out = none) const;
 
   /// Returns whether the point is so close to a triangle with another number than `left_out` that rounding
@@ -59,8 +59,8 @@ class WindingNumber {
   }
 
   std::vector<WeightedTriangle> triangles_;  // in the order of the leaves
-  bool numbers_are_shared_ = false;  // whether several triangles have the same number; else a triangle that is
-                                     // left out is the one that the point lies on, and thus near
+  bool numbers_are_shared_ = false;  // whether several triangles have the same number; else a triangle that
+                                     // is left out is the one that the point lies on, and thus near
   Hierarchy<Summary> tree_;
 };
 
