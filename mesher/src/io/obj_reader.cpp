@@ -45,7 +45,7 @@ class Names {
 struct Elements {
   std::vector<ObjElement> list;
   Names groups, materials;
-  std::size_t group = 0, material = 0;  ///< those of the next element
+  std::size_t group = 0, material = 0;  ///< numbers for the next element
   std::vector<std::int64_t> corners;    ///< indices from 0; the file's negative ones are resolved
 };
 
