@@ -23,8 +23,9 @@ void Operations::insert_in_cavity(Index tet, double least, Change& change) {
   }
 }
 
-// Extends a cavity by the tet across the hull face of the worst new tet, as long as that raises the worst
-// quality. Then proposes a vertex in the cavity, if all new tets are good enough.
+// Extends a cavity by the tet behind the hull face of the worst new tet, as long as that raises the quality
+// of the worst new tet. Then proposes a vertex in the cavity, if all new tets are better than `least` and
+// `change`.
 void Operations::grow_and_insert(std::vector<Index> cavity, double least, Change& change) {
   if (!find_cone_of_cavity(cavity)) return;
   auto [place, quality] = best_place(centre_of_hull(), none, everywhere, -1);
@@ -45,7 +46,8 @@ void Operations::grow_and_insert(std::vector<Index> cavity, double least, Change
   fill_insertion(place, quality, {}, change);
 }
 
-// Finds the cone of a cavity. Returns false if a vertex, a curve or a face of the mesh lies inside.
+// Finds the cone of a cavity. Returns false if a vertex, a mesh face or an edge on a curve lies inside, or if
+// one of the tets has to stay.
 bool Operations::find_cone_of_cavity(const std::vector<Index>& cavity) {
   cone_.clear();
   cone_.tets = cavity;
@@ -84,8 +86,8 @@ Point Operations::centre_of_hull() const {
   return first + sum / (3.0 * static_cast<double>(cone_.hull.size()));
 }
 
-// Returns the tet behind the hull face whose tet with this apex is worst; none if that hull face is a face of
-// the mesh.
+// Returns the tet outside the cavity at the hull face that makes the worst tet with this apex; none if that
+// hull face is a mesh face.
 Index Operations::beyond_worst_of_hull(const Point& apex) const {
   double worst = INFINITY;
   std::size_t at = 0;

@@ -11,8 +11,8 @@ namespace collarmesh::remeshing {
 
 namespace {
 
-// Narrow places must be narrower than those of the certificate by this factor, because vertices move
-// afterwards. If vertices will move onto exact geometry, the places must be narrower by the reserve, too.
+// The largest width of narrow places is that of the certificate times this factor, because vertices move
+// afterwards. If they will move onto exact geometry, the reserve reduces this width further.
 constexpr double narrower = 0.98;
 constexpr std::uint8_t star = 1, book = 2;
 
@@ -30,7 +30,7 @@ Tag tag_of(const Plc& plc, const TetMesh::VertexFeature& feature) {
   return feature.dimension == 0 ? plc.vertices[feature.feature].tag : plc.curves[feature.feature].tag;
 }
 
-/// The edges of a mesh on creases.
+/// The mesh edges on creases.
 class CreaseEdges {
  public:
   CreaseEdges(const TetMesh& mesh, const CreaseCells& creases) {
@@ -40,7 +40,7 @@ class CreaseEdges {
     std::ranges::sort(edges_);
   }
 
-  /// Returns the tag of the crease that one of the tet's edges lies on; null if no edge lies on a crease.
+  /// Returns the tag of a crease on which an edge of the tet lies; null if no edge lies on a crease.
   const Tag* tag_in(const std::array<Index, 4>& corners) const {
     for (unsigned i = 0; i < 4; ++i)
       for (unsigned j = 0; j < i; ++j) {

@@ -14,7 +14,7 @@ namespace collarmesh::remeshing {
 /// coarsened mesh.
 class CreaseCells {
  public:
-  /// Finds these vertices among the current ones, by their features.
+  /// Finds these vertices by their features. Vertices added to the mesh later count as not on creases.
   CreaseCells(const Plc& plc, const std::vector<TetMesh::VertexFeature>& features, double crease_angle);
 
   bool touch(const std::array<Index, 4>& corners) const {
@@ -33,12 +33,12 @@ class CreaseCells {
 /// Stands for a vertex that will be inserted on a patch, or on a curve of a patch.
 inline constexpr Index inserted_on_surface = none - 1;
 
-/// Bounds that differ from place to place in a coarsened mesh: the largest dihedral angle of cells that touch
-/// a crease and, if only these cells and cells in narrow places may exceed the radius-edge bound, the narrow
-/// places. Other rules contain the bounds of thin tets and the radius-edge bound itself.
+/// Bounds that hold only at some places of a coarsened mesh: the largest dihedral angle of cells that touch a
+/// crease; on request, that cells elsewhere exceed the radius-edge bound only in narrow places, and that each
+/// tet has an interior node. The bounds on thin tets are in `ThinShape`.
 class CellBounds {
  public:
-  /// The quality of a tet that `allow` forbids is multiplied by this, so that any other tet in its place is
+  /// Shape rules multiply the quality of a tet that `allow` forbids by this, so that any permitted tet is
   /// better.
   static constexpr double forbidden = 1e-3;
 
@@ -54,7 +54,7 @@ class CellBounds {
   }
   /// Returns whether `allow` may forbid tets that keep the bounds on thin tets.
   bool forbid_thin_tets() const { return narrow_.has_value() || tight_ || mesh_ != nullptr; }
-  /// Returns whether each tet needs an interior node, but this one has all corners on surfaces.
+  /// Returns whether each tet needs an interior node and this one has none: all its corners lie on surfaces.
   bool lacks_interior_node(const std::array<Index, 4>& corners) const {
     return mesh_ != nullptr && std::ranges::all_of(corners, [this](Index v) { return on_surface(v); });
   }
@@ -82,14 +82,14 @@ class CellBounds {
                                                             // each tet needs an interior node
 };
 
-/// All bounds on the tets of a mesh but the radius-edge bound.
+/// All bounds on the tets of a mesh except the radius-edge bound.
 struct TetBounds {
   ThinShape thin;
   CellBounds cells;
 };
 
-/// Marks the cells that touch a crease as its collar: 2 if they have an edge on it, else 1. In a mesh with
-/// collar balls, existing marks stay. Then marks thin tets.
+/// Marks the cells that touch a crease as its collar (in `tet_collar`: 2 if they have an edge on it, else 1),
+/// and then thin tets. In a mesh with collar balls, the existing marks of collars stay.
 void mark_cells(TetMesh& mesh, const Plc& plc, const Bounds& bounds);
 
 }  // namespace collarmesh::remeshing

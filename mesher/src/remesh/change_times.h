@@ -10,8 +10,8 @@
 
 namespace collarmesh::remeshing {
 
-/// The times at which vertices, or tets at them, last changed: 0 if they never did. Data read at some
-/// vertices is up to date as long as none of them has changed since.
+/// The time at which each vertex, or a tet at it, last changed: 0 if none has changed yet. Data read at some
+/// vertices is up to date as long as none of these vertices has changed since.
 class ChangeTimes {
  public:
   explicit ChangeTimes(std::size_t vertices) : at_(vertices, 0) {}
@@ -26,7 +26,7 @@ class ChangeTimes {
     assert(vertex < at_.size());
     at_[vertex] = now_;
   }
-  /// Begins a new time, at which a vertex changes.
+  /// Begins a new time, and records that a vertex changes then.
   void note_next(Index vertex) { advance(), note(vertex); }
   std::uint32_t at(Index vertex) const {
     assert(vertex < at_.size());

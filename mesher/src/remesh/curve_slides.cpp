@@ -44,7 +44,7 @@ void CurveSlides::find_all_places() const {
       if (plc_.curves[c].ends[i] != none) ends[i] = point_of[plc_.curves[c].ends[i]];
     if (!vertices[c].empty()) find_places(c, vertices[c], ends);
   }
-  // Keeps only neighbours on the curve that are joined by an edge.
+  // Forget neighbours on the curve that no mesh edge joins to the vertex.
   std::vector<std::array<Index, 2>> edges;
   for (const auto& e : mesh_.edges) edges.push_back(sorted(e));
   std::ranges::sort(edges);

@@ -38,7 +38,7 @@ class CurveSlides {
     assert(movable(vertex));
     return places_[vertex].neighbours;
   }
-  /// Returns whether a single edge could join the vertex's neighbours.
+  /// Returns whether the curve has an edge to spare, and a single edge could join the vertex's neighbours.
   bool may_skip(Index vertex) const;
   /// Records that a single edge joins the vertex's neighbours.
   void skipped(Index vertex);
@@ -48,11 +48,11 @@ class CurveSlides {
     std::array<Index, 2> ends{none, none};  ///< ends of the edge, in the order of the curve
     double parameter = 0;
   };
-  /// Returns the middle of this mesh edge, by arc length; nothing if the edge's place on the curve is
-  /// unknown.
+  /// Returns the middle of this mesh edge, by arc length of the curve; nothing if the edge's place on the
+  /// curve is unknown.
   std::optional<Middle> middle(Index curve, Index a, Index b) const;
-  /// Returns whether this mesh edge and its part of the curve are within the tolerance of each other. False
-  /// if that part is unknown.
+  /// Returns whether this mesh edge and its part of the curve are within the tolerance of each other. Returns
+  /// false if that part is unknown.
   bool edge_is_near(Index curve, Index a, Index b) const;
   Point place(Index curve, const Middle& middle) const { return paths_.point(curve, middle.parameter); }
   /// Records that a new vertex divides an edge at this middle.
@@ -90,9 +90,9 @@ class CurveSlides {
   SurfaceTolerance tolerance_;
   CurvePaths paths_;
   mutable std::once_flag prepared_;
-  // By vertex; computed at the first use, for the vertices that exist then.
+  // By vertex. Computed at the first use for the vertices that exist then; `divided` adds others.
   mutable std::vector<Place> places_;
-  std::vector<std::ptrdiff_t> spare_edges_;  // by curve: the number of edges above its minimum
+  std::vector<std::ptrdiff_t> spare_edges_;  // by curve: its number of edges minus the least permitted number
   UndoLog<std::vector<Place>> old_places_{places_};
   UndoLog<std::vector<std::ptrdiff_t>> old_spare_edges_{spare_edges_};
 };

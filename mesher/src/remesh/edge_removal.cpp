@@ -22,8 +22,8 @@ double Operations::new_quality(const std::array<Index, 4>& v, double above) cons
 }
 
 // Triangulates the polygon around the edge ab. Each triangle makes two tets, with a and with b; the worst of
-// all these tets is as good as possible (Klincsek 1980). Returns its quality; -1 if none is above `above`.
-// Cost: the polygon's vertices cubed.
+// all these tets is as good as possible (Klincsek 1980). Returns its quality, or -1 if no triangulation makes
+// only tets better than `above`. Cost: the polygon's number of vertices cubed.
 double Operations::triangulate(Index a, Index b, const Polygon& polygon, bool closed, double above) {
   const std::size_t n = polygon.size();
   const auto& points = mesh_.points;
@@ -85,8 +85,8 @@ void Operations::remove_edge(Index tet, unsigned i, unsigned j, Change& change,
   if (n > largest_ring || (ring_.closed && m < 3)) return;
   // The mesh faces at the edge, which must be preserved, each with the place of its third corner in the link.
   std::vector<std::pair<std::size_t, Index>> kept;
-  // If `change` is at least as good as this tet, it is at least as good as the worst tet at the edge, too.
-  // The quality of that worst tet need not be known then.
+  // If `change` is at least as good as this tet, it is at least as good as the worst tet at the edge. The new
+  // tets need only be better than `change` then, so the quality of the worst tet is not computed.
   const bool known = anyhow_above || (!change.is_none() && change.quality >= quality(tet));
   double worst = known ? -INFINITY : INFINITY;
   for (std::size_t k = 0; k < n; ++k) {
@@ -149,8 +149,8 @@ void Operations::remove_edge(Index tet, unsigned i, unsigned j, Change& change,
     change.read = std::move(made.read);
 }
 
-// Returns whether this boundary sliver may be given to the region across its two faces at ab. There must be
-// tets on the other side of these faces.
+// Returns whether this boundary sliver may be given to the region across its two mesh faces at ab. Its other
+// two faces then become mesh faces, so they must not be mesh faces already and must have tets behind them.
 bool Operations::may_lose(Index tet, Index a, Index b) const {
   const auto& t = complex_[tet];
   for (const Index v : t.corners)
@@ -164,8 +164,8 @@ bool Operations::may_lose(Index tet, Index a, Index b) const {
   return true;
 }
 
-// Returns whether two faces of a patch may be replaced by those that the change creates, which share a new
-// edge. Returns false if the mesh has faces at the new edge already, because a face could then occur twice.
+// Returns whether the two faces that the change creates, which share a new edge, may replace its old faces.
+// Returns false if the mesh has faces at the new edge already, because a face could then occur twice.
 bool Operations::may_turn(Change& change) {
   const auto& turned = change.replacement.created_faces;
   std::array<Index, 2> shared{none, none};

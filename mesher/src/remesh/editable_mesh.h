@@ -55,8 +55,8 @@ class EditableMesh {
         forced(forced_edges_of(meant, mesh, lower_where_forced)),
         kept_(patches_to_keep(meant, mesh)) {}
 
-  /// Makes an editable mesh with the surface tolerance that these bounds give a mesh of unknown target edge
-  /// length.
+  /// Takes the surface tolerance from these bounds (tolerance_of_any_size), for callers that do not know the
+  /// target edge lengths.
   EditableMesh(TetMesh& mesh, const Plc& meant, const Bounds& bounds, double edges_per_hole = 0,
                const KnownNeighbours& neighbours = {})
       : EditableMesh(mesh, meant, tolerance_of_any_size(meant, bounds), edges_per_hole,
@@ -73,10 +73,10 @@ class EditableMesh {
             CellBounds(plc, complex.mesh(), bounds)};
   }
 
-  /// Returns whether the triangles of this patch must stay, like those of periodic faces.
+  /// Returns whether the triangles of this patch must stay, as on periodic faces.
   bool keeps(Index patch) const { return !kept_.empty() && patch != none && kept_[patch]; }
 
-  /// Keeps the triangles of further patches from now on. `patches`: by patch, whether to keep them.
+  /// Keeps the triangles of further patches from now on: those of each `patch` with `patches[patch]`.
   void keep_triangles_of(const std::vector<bool>& patches) {
     kept_.resize(patches.size(), false);
     for (std::size_t patch = 0; patch < patches.size(); ++patch)
@@ -92,29 +92,29 @@ class EditableMesh {
   }
   bool is_fixed(Index vertex) const { return vertex < fixed_.size() && fixed_[vertex]; }
 
-  /// Leaves tets unchanged from now on if all their corners are among these vertices.
+  /// Leaves tets unchanged from now on if all their corners are among these vertices. `vertices`: by vertex.
   void leave(std::vector<bool> vertices) { left_ = std::move(vertices); }
   bool leaves(const TetComplex::Tet& tet) const {
     return !left_.empty() &&
            std::ranges::all_of(tet.corners, [&](Index v) { return v < left_.size() && left_[v]; });
   }
 
-  /// Returns false if the change is a collapse that is no longer allowed, because others on the same curve
-  /// have used up its spare edges.
+  /// Returns false if the change is a collapse on a curve that is no longer allowed, because other collapses
+  /// on this curve have used up its spare edges.
   bool curve_can_spare(const Change& change) const {
     return change.kind != Change::Kind::collapse || complex.mesh().features[change.vertex].dimension != 1 ||
            curves.may_skip(change.vertex);
   }
-  /// Returns whether an edge to `onto` could lie in the vertex's curve or patch.
+  /// Returns whether an edge to `onto` could lie in the vertex's curve or patch. Returns true for a vertex
+  /// inside a region.
   bool may_share_feature(Index vertex, Index onto) const {
     const auto& [dimension, feature] = complex.mesh().features[vertex];
     const auto& other = complex.mesh().features[onto];
     return dimension == 3 || other.dimension < dimension ||
            (other.dimension == dimension && other.feature == feature);
   }
-  /// Returns whether all tets that a change makes are positively oriented, decided exactly. Qualities are
-  /// computed with rounding errors, so they mean nothing if vertices are as close as 1e-12 of their
-  /// coordinates.
+  /// Returns whether all tets that a change makes are positively oriented, decided exactly. Qualities have
+  /// rounding errors, so they mean nothing if the distance of vertices is only 1e-12 of their coordinates.
   bool stays_oriented(const Change& change) const;
   /// Applies a change. Returns the new and the changed tets, valid until the next call. Precondition: nothing
   /// that the change depends on has changed since it was proposed.
@@ -137,7 +137,7 @@ class EditableMesh {
   static std::vector<bool> patches_to_keep(const Plc& plc, const TetMesh& mesh);
 
   std::vector<bool> kept_;          // by patch: whether its triangles stay; empty: none stays
-  std::vector<bool> fixed_, left_;  // by vertex; empty or shorter: false
+  std::vector<bool> fixed_, left_;  // by vertex; vertices without an entry are neither fixed nor left
   std::vector<Index> changed_;
   bool prepared_ = false;
 };
@@ -175,8 +175,8 @@ class Trial {
     for (const Index t : changed) note(t);
     return changed;
   }
-  /// Returns the tets of all changes made by `apply` of this trial, but not of changes made on the mesh
-  /// directly. Some of these tets have been removed since.
+  /// Returns the tets of all changes that were made by `apply` of this trial, not by EditableMesh::apply.
+  /// Later changes may have removed some of these tets.
   const std::vector<Index>& changed() const { return changed_; }
 
   void keep() {

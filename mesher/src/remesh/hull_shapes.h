@@ -9,8 +9,9 @@
 
 namespace collarmesh::remeshing {
 
-/// The faces of a hull, for measuring the tets that they make with an apex. Measures two tets at a time, in
-/// half the time of `extreme_cosines`. Terms that do not depend on the apex are computed once.
+/// The faces of a hull, for measuring the tets that they make with an apex. Measures two tets at a time,
+/// faster than calls of `remeshing::extreme_cosines`, and computes terms that do not depend on the apex only
+/// once.
 class HullShapes {
  public:
   static constexpr std::size_t at_once = 2;
@@ -36,7 +37,7 @@ class HullShapes {
     TwoVectors normal;
     Two inverse_squared_normal;
     std::array<Two, 3> squared_sides;  ///< squared lengths of the sides opposite the corners
-    Two least_cosine;                  ///< signed squared cosine of the face's largest angle
+    Two least_cosine;                  ///< signed squared cosine of the face's obtuse angle; 1: has none
   };
 
   static TwoVectors minus(const TwoVectors& a, const TwoVectors& b);

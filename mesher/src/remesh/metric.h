@@ -9,9 +9,9 @@
 
 namespace collarmesh::remeshing {
 
-/// A measure of edges and tets, in units of the lengths that edges should have. It is the same in all
-/// directions: a vertex has a target length, an edge the mean of those at its ends, a tet the mean of those
-/// at its corners. Edges are given as vectors, so that lengths could depend on their directions.
+/// A measure of lengths and volumes in units of target edge lengths. It is the same in all directions: each
+/// vertex has a target length; the target length of an edge or a tet is the mean of those at its corners.
+/// Functions take edges as vectors, so that a metric could depend on directions.
 class Metric {
  public:
   /// `targets`: the target lengths, by vertex.
@@ -23,13 +23,13 @@ class Metric {
     return 0.25 * (targets_[tet[0]] + targets_[tet[1]] + targets_[tet[2]] + targets_[tet[3]]);
   }
 
-  /// Returns the length of an edge between a and b.
+  /// Returns the length of an edge between a and b in units of its target length.
   double length(Index a, Index b, const Vector& edge) const { return norm(edge) / target(a, b); }
   double squared_length(Index a, Index b, const Vector& edge) const {
     const double unit = target(a, b);
     return squared_norm(edge) / (unit * unit);
   }
-  /// Returns whether an edge is longer than `length`. Needs no division.
+  /// Returns whether an edge is longer than `length` times its target length. Needs no division.
   bool exceeds(double length, Index a, Index b, const Vector& edge) const {
     const double unit = target(a, b);
     return squared_norm(edge) > length * length * (unit * unit);
@@ -44,7 +44,7 @@ class Metric {
 
   /// Adds a vertex.
   void add(double target) { targets_.push_back(target); }
-  /// Removes the last vertices, or adds some with this target.
+  /// Sets the number of vertices: removes the last ones, or adds vertices with this target length.
   void resize(std::size_t vertices, double target = 0) { targets_.resize(vertices, target); }
   void set(Index vertex, double target) { targets_[vertex] = target; }
 

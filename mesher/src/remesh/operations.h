@@ -13,8 +13,7 @@ namespace collarmesh::remeshing {
 
 /// The local operations. Each writes its proposal into `change` if it keeps every guarantee, and if its worst
 /// new tet is better than the worst old tet of its cavity and than the worst new tet of the proposal that
-/// `change` holds. Operations named "anyhow", or asked to work anyhow, may make the worst tet worse. Each
-/// thread has its own object.
+/// `change` holds. The operations' comments name exceptions. Each thread has its own object.
 class Operations {
  public:
   /// Keeps references to both arguments.
@@ -27,36 +26,38 @@ class Operations {
         curves_(edited.curves),
         rule_(rule) {}
 
-  /// Removes the edge between two corners of a tet by retriangulating its ring as well as possible. An edge
-  /// inside a patch is removed together with its two triangles there; a sliver that has both triangles is
-  /// given to the region on the other side. `anyhow_above`: if set, the new tets may be worse than the old
+  /// Removes the edge between two corners of a tet by retriangulating its ring as well as possible. For an
+  /// edge inside a patch, two other triangles replace the two at the edge; a sliver with both old triangles
+  /// goes to the region on their other side. `anyhow_above`: if set, the new tets may be worse than the old
   /// ones, but all must be better than this value.
   void remove_edge(Index tet, unsigned i, unsigned j, Change& change,
                    std::optional<double> anyhow_above = {});
   /// Removes an edge of a tet: the one whose removal leaves the best tets.
   void remove_best_edge(Index tet, Change& change);
-  /// Removes an edge of a tet and another edge beside it by filling the space of all tets at both edges
-  /// again. Helps where removing a single edge leaves inverted tets, as between two prisms of a thin wall.
+  /// Removes an edge of a tet and an edge of a neighbouring tet: fills the space of all tets at these two
+  /// edges anew. Helps where removing a single edge leaves inverted tets, as between two prisms of a thin
+  /// wall.
   void reconnect(Index tet, Change& change);
   /// Moves a vertex within its feature to a place where the worst tet around it is better.
   void move_vertex(Index vertex, Change& change);
-  /// Moves a vertex within its patch to a place where it faces another vertex of its tets, if the worst of
-  /// these tets becomes better. In thin places only vertices that face each other permit long edges.
+  /// Moves a vertex within its patch to a place opposite another vertex of its tets, if the worst of these
+  /// tets becomes better. In thin places long edges need vertices that lie opposite each other.
   void move_to_face(Index vertex, Change& change);
   /// Inserts a vertex on an edge inside a region or a patch, at the best place, if all new tets are better
   /// than `least`.
   void split_edge(Index a, Index b, double least, Change& change);
-  /// Inserts a vertex like `split_edge`, even if the old tets at the edge are better than the new ones.
+  /// Inserts a vertex like `split_edge`, even if the old tets at the edge, or the proposal that `change`
+  /// holds, are better.
   void split_edge_anyhow(Index a, Index b, double least, Change& change);
   /// Inserts a vertex inside a region. Removes a tet or all tets at one of its edges, then further tets
-  /// beside them as long as that makes the worst new tet better, and fills the cavity from the vertex. Does
-  /// so only if all new tets are better than `least` and than `change`.
+  /// beside them as long as that makes the worst new tet better, and joins the vertex to the cavity's border.
+  /// All new tets must be better than `least` and than `change`, but may be worse than the old tets.
   void insert_in_cavity(Index tet, double least, Change& change);
-  /// Inserts a vertex on an edge with any number of tets, if all new tets are better than `least`: inside a
-  /// region or in a patch at this share of the edge's length or, if that fails, at the best place; on a curve
-  /// in the middle of the edge.
+  /// Inserts a vertex on an edge, however many tets it has, if all new tets are better than `least`, even if
+  /// the old tets or those of `change` are better. Inside a region or in a patch, inserts it at this share of
+  /// the edge's length or, if that fails, at the best place; on a curve in the middle of the edge.
   void divide_edge(Index a, Index b, double share, double least, Change& change);
-  /// Lengths of the edges that a collapse makes: at most that of the longest edge of the cavity, or any.
+  /// The permitted lengths of edges that a collapse makes: at most the cavity's longest edge, or any length.
   enum class Lengths { no_longer, any };
   /// Collapses an edge: moves a vertex along it, within the vertex's feature, onto the other end, so that the
   /// tets at the edge vanish. `anyhow_above`: as for `remove_edge`.
@@ -65,12 +66,12 @@ class Operations {
   /// Collapses an edge of a tet: the one whose collapse leaves the best tets.
   void collapse_best_edge(Index tet, Change& change, Lengths lengths = Lengths::no_longer);
 
-  /// Begins queries about collapses of edges at this vertex, whose star is given. Returns false if the vertex
+  /// Begins queries about collapses of edges at this vertex. `star`: its tets. Returns false if the vertex
   /// has to stay.
   bool begin_collapses(Index vertex, std::span<const Index> star);
-  /// Proposes the collapse of the queried vertex onto `onto`, under stricter conditions: the rule allows all
-  /// new tets, none is worse than `least`, and those below `enough` are no worse than the worst tet of the
-  /// cavity.
+  /// Proposes the collapse of the queried vertex onto `onto`, under other conditions: all new tets are better
+  /// than `least`; they are at least as good as `enough` or as the worst tet of the cavity. New edges may
+  /// have any length, and `change` may hold a better proposal.
   void collapse_onto(Index onto, double least, double enough, Change& change);
   /// Returns the quality of the worst tet at the queried vertex.
   double worst_at_vertex() { return worst_at_vertex(vertex_); }
@@ -89,11 +90,11 @@ class Operations {
     Index patch;  ///< the patch, planar or smooth, or none
   };
   static constexpr Freedom everywhere{{Vector{1, 0, 0}, Vector{0, 1, 0}, Vector{0, 0, 1}}, 3, none};
-  /// A cavity and its apex, a present or a future vertex: each tet and mesh face of the cavity joins the apex
-  /// to a part of the cavity's border.
+  /// A cavity to be filled from an apex, which is a vertex of the mesh or one to be inserted: each new tet
+  /// joins the apex to a triangle of the cavity's hull, each new mesh face joins it to an edge of the rim.
   struct Cone {
     std::vector<Index> tets;
-    double worst = INFINITY;                 ///< worst quality of the tets; infinite if not known yet
+    double worst = INFINITY;                 ///< worst quality of `tets`; infinite if not known yet
     std::vector<std::array<Index, 3>> hull;  ///< faces that make positive tets with the apex
     std::vector<Index> hull_tet;             ///< the tet behind each face of the hull
     HullShapes shapes;                       ///< shapes of the hull's faces; empty if not known yet

@@ -14,13 +14,13 @@
 
 namespace collarmesh::remeshing {
 
-/// A loop that makes changes in a fixed order with all threads: several threads propose changes for the next
-/// few items at once, one thread makes them, one after the other. `Proposer` finds changes and only reads;
-/// each thread has its own.
+/// A parallel loop that makes changes in a fixed order: all threads propose changes for the next few items;
+/// then one thread makes these changes, one after the other. `Proposer` finds changes and only reads the
+/// mesh; each thread has its own.
 template <class Proposer>
 class OrderedSpeculation {
  public:
-  /// Calls `make()` for each proposer.
+  /// Makes each proposer by calling `make()`.
   template <class Make>
   explicit OrderedSpeculation(const Make& make) : own_(make()), proposers_(make) {}
 
@@ -32,10 +32,11 @@ class OrderedSpeculation {
     parallel_for(items.size(), [&](std::size_t i) { propose(proposers_.local(), items[i], proposals[i]); });
   }
 
-  /// Calls `propose(proposer, item, proposal)` and then `use(item, proposal)`, which may change the mesh, for
-  /// one item after the other. The result is that of a single thread. Other threads propose ahead; a proposal
-  /// counts only if `is_up_to_date(item, proposal, begun)` finds that nothing it depends on has changed since
-  /// the time `begun`. Ends and returns false as soon as `use` returns false; otherwise returns true.
+  /// For one item after the other, calls `propose(proposer, item, proposal)` and then `use(item, proposal)`,
+  /// which may change the mesh. All threads propose ahead for the next items. Before its use, a proposal is
+  /// made anew unless `is_up_to_date(item, proposal, begun)` returns true, which means that nothing on which
+  /// it depends has changed since the time `begun`. So the result does not depend on the number of threads.
+  /// Ends and returns false as soon as `use` returns false; otherwise returns true.
   template <class Proposal>
   bool for_each(const auto& items, ChangeTimes& times, const auto& propose, const auto& is_up_to_date,
                 const auto& use) {
@@ -56,8 +57,8 @@ class OrderedSpeculation {
 
  private:
   // Returns the number of items for which changes are proposed at once: one in `items_per_proposal` of all
-  // items, so that proposals rarely concern the same tets, or several for each thread if that is more; at
-  // most `most`. A single thread proposes changes for one item at a time.
+  // items, so that proposals rarely concern the same tets; but at least `proposals_per_thread` for each
+  // thread, and at most `most`. A single thread proposes changes for one item at a time.
   static std::size_t proposals_at_once(std::size_t items) {
     constexpr std::size_t most = 256, items_per_proposal = 256, proposals_per_thread = 4;
     const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());

@@ -34,8 +34,8 @@ void Operations::reconnect(Index tet, Change& change) {
   }
 }
 
-// Makes `change` the proposal to fill the space of these tets with others, if the worst new tet is better
-// than the worst old one and than the worst new tet of the proposal so far.
+// Proposes to fill the space of these tets with other tets, if the worst new tet is better than the worst old
+// one and than the worst new tet of the proposal that `change` holds.
 void Operations::refill(const std::vector<Index>& cavity, Change& change) {
   if (!find_cone_of_cavity(cavity)) return;
   double worst = INFINITY;

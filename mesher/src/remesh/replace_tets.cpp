@@ -14,11 +14,11 @@ namespace collarmesh::remeshing {
 
 namespace {
 
-// A replacement is not tried if it makes a tet worse than this share of `least_quality`.
+// Replacements that make a tet worse than this share of `least_quality` are not tried.
 constexpr double mendable = 0.15;
 constexpr unsigned most_repairs = 16;
 
-/// A rule by which tets with certain corners are worse than all others.
+/// A rule like another one, except that tets with certain corners are worse than all other tets.
 class UnwantedRule final : public ShapeRule {
  public:
   UnwantedRule(const ShapeRule& rule, std::set<std::array<Index, 4>> unwanted)
@@ -84,7 +84,7 @@ class Replacing {
     return edges;
   }
 
-  // Makes a change and repairs the tets that it leaves too poor; undoes all if that fails.
+  // Makes a change and repairs the tets that it leaves too poor. If that fails, undoes all and returns false.
   bool mended(Change change) {
     Trial trial(edited_);
     touched_.clear();
@@ -144,7 +144,7 @@ class Replacing {
   const ShapeRule& rule_;
   Operations operations_;
   double least_;
-  std::vector<Index> touched_;  // tets that were made or changed
+  std::vector<Index> touched_;  // tets that the current trial has made or changed
 };
 
 }  // namespace
@@ -159,8 +159,8 @@ std::size_t replace_tets(EditableMesh& edited, std::span<const UnwantedTet> unwa
   std::size_t gone = 0;
   for (std::size_t i = 0; i < unwanted.size(); ++i) {
     const auto& tet = edited.complex[unwanted[i].tet];
-    const bool is_there = tet.alive && sorted(tet.corners) == corners[i];  // if not, another removal has
-                                                                           // removed it, too
+    const bool is_there = tet.alive && sorted(tet.corners) == corners[i];  // if not, the removal of
+                                                                           // another tet removed it
     if (!is_there || replacing.replace(unwanted[i])) ++gone;
   }
   return gone;

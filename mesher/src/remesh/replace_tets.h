@@ -12,14 +12,15 @@ namespace collarmesh::remeshing {
 /// A tet to remove, whatever its quality.
 struct UnwantedTet {
   Index tet;
-  std::array<Index, 2> edge{none, none};  ///< only a vertex on this edge would remove the tet; none: a vertex
-                                          ///< on any edge would
+  std::array<Index, 2> edge{none, none};  ///< the edge on which to try a vertex before anything else; none:
+                                          ///< no edge is preferred
 };
 
-/// Removes tets one after the other, so that all tets in their place reach the quality `least_quality` of the
-/// rule: inserts a vertex on an edge inside a region or on a planar patch, or removes an edge. Then repairs
-/// tets that are too poor, by more removals and by moving vertices inside regions; if that is not enough, the
-/// tet stays. Vertices keep their numbers; new ones follow. Returns how many of the unwanted tets are gone.
+/// Removes tets one after the other, so that all tets in their place have at least the quality
+/// `least_quality` by the rule: inserts a vertex on an edge, which lies on no curve or smooth patch unless
+/// `UnwantedTet::edge` names it, or removes an edge. Then repairs new tets that are too poor, by removing
+/// more edges and by moving vertices inside regions; if some stay too poor, undoes all this and keeps the
+/// tet. Vertices keep their numbers; new ones follow. Returns how many of the unwanted tets are gone.
 /// Precondition: the mesh has `features`.
 std::size_t replace_tets(EditableMesh& edited, std::span<const UnwantedTet> unwanted, const ShapeRule& rule,
                          double least_quality);

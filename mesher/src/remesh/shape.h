@@ -12,11 +12,11 @@ namespace collarmesh::remeshing {
 
 using Corners = std::array<Point, 4>;
 
-/// The sine of an obtuse dihedral angle is multiplied by this factor.
+/// In `shape_quality` the sines of obtuse dihedral angles are multiplied by this factor.
 constexpr double obtuse_weight = 0.7;
 
-/// Returns the smallest sine of a tet's dihedral angles, obtuse ones weighted: from 0 to about 0.94; not
-/// positive for a flat or an inverted tet.
+/// Returns the smallest sine of a tet's dihedral angles, after multiplying the sines of obtuse angles by
+/// `obtuse_weight`: at most about 0.94. Returns 0 for a flat tet and -1 for an inverted one.
 inline double shape_quality(const Corners& p) {
   const Vector ab = p[1] - p[0], ac = p[2] - p[0], ad = p[3] - p[0], bc = p[2] - p[1], bd = p[3] - p[1],
                cd = p[3] - p[2];
@@ -59,7 +59,7 @@ inline Circumsphere circumsphere(const Corners& p) {
 }
 
 /// Returns the edges of a tet, longest first: removing the longest edges of a sliver helps most. `length`
-/// returns the distance of two points.
+/// returns the distance of two points, or a number that grows with it, such as its square.
 template <class Length>
 std::array<EdgePlaces, 6> longest_first(const Corners& p, const Length& length) {
   std::array<std::pair<double, EdgePlaces>, 6> by_length;

@@ -22,11 +22,11 @@ class ShapeRule {
 
   /// Returns the quality: the larger the better; not positive for a flat or an inverted tet.
   virtual double quality(const Corners& p, const std::array<Index, 4>& corners) const = 0;
-  /// Returns this rule if it depends only on the extreme angles of tets (pairs of tets are then measured
-  /// faster), else null.
+  /// Returns a rule that gives the same qualities and computes them from the extreme angles of tets, which
+  /// are measured faster for two tets at a time. Returns null if there is no such rule.
   virtual const AngleRule* by_angles() const { return nullptr; }
-  /// Returns whether an operation may make this tet, whose quality is given. A flat or an inverted tet comes
-  /// here if it replaces a worse one.
+  /// Returns whether an operation may make this tet. `quality`: its quality. Must accept queries about flat
+  /// and inverted tets, too, which may replace worse ones.
   virtual bool allows(const Corners& p, const std::array<Index, 4>& corners, double quality) const = 0;
   /// Returns the quality if it is above `above`, which is at least -1, and an operation may make the tet;
   /// else -1.
@@ -35,11 +35,12 @@ class ShapeRule {
     const double quality = this->quality(p, corners);
     return quality > above && allows(p, corners, quality) ? quality : -1;
   }
-  /// Returns whether an operation may make an edge between these vertices in place of another edge there.
+  /// Returns whether an operation may make an edge between these vertices. `edge`: its vector; `before`: the
+  /// vector of the edge that it replaces.
   virtual bool allows_edge(Index, Index, const Vector& /*edge*/, const Vector& /*before*/) const {
     return true;
   }
-  /// Returns the share by which a move of a vertex must raise the quality to be worth it.
+  /// Returns the share by which a move of a vertex must raise the quality of the worst tet to be worth it.
   virtual double least_gain() const { return 1e-3; }
   /// Returns the number of step lengths that a move tries, each half of the one before.
   virtual unsigned step_lengths() const { return 4; }
@@ -93,8 +94,9 @@ class ThinRule final : public AngleRule {
   TetBounds bounds_;
 };
 
-/// The rule of improvement: the smallest sine of the dihedral angles, within the radius-edge bound. Where
-/// tets may be thin, tets with an angle above the largest one of thin tets are worse than all others.
+/// The rule of improvement. The quality is `shape_quality`. New tets must keep the radius-edge bound or, if
+/// tets may be thin, the bounds on thin tets. In that case tets with an angle above the largest one of thin
+/// tets are worse than all others.
 class SliverRule final : public ShapeRule {
  public:
   /// Keeps `thin` and `cells` by reference. If `thin` is null, no tet may exceed the radius-edge bound.
@@ -116,8 +118,8 @@ class SliverRule final : public ShapeRule {
     return quality > above && allows(tet) ? quality : -1;
   }
 
-  /// Returns true only if the quality is above this value, which is positive. Much cheaper than the quality;
-  /// may return false for some tets above it.
+  /// Returns true only if the tet's quality is above `quality`, which must be positive. Much cheaper than
+  /// computing the quality, but returns false for some better tets, too.
   bool surely_exceeds(double quality, const Corners& p) const {
     if (forbids_thin_tets()) return false;
     const double of_obtuse = quality / obtuse_weight;
@@ -126,15 +128,16 @@ class SliverRule final : public ShapeRule {
            surely_between(p, 1 - quality * quality, std::min(1 - of_obtuse * of_obtuse, of_largest));
   }
 
-  /// Returns whether no better tet is possible, because the input forces an edge to be short.
+  /// Returns whether the input forces an edge of the tet to be short, so that hardly a better tet is
+  /// possible.
   bool is_as_forced(const Corners& p, const std::array<Index, 4>& corners) const {
     return thin_ != nullptr && thin_->is_as_forced(p, corners);
   }
   double least_gain() const override { return least_gain_; }
   /// Sets `least_gain` for later operations.
   void set_least_gain(double share) { least_gain_ = share; }
-  /// Returns whether a tet of this quality has an angle above the largest one of thin tets or one below 0.06
-  /// degrees, or is forbidden by the bounds on cells. False if no tet may be thin.
+  /// Returns whether a tet of this quality has an angle above the largest one of thin tets, has an angle
+  /// below about 0.06 degrees, or is forbidden by the bounds on cells. Returns false if no tet may be thin.
   bool is_too_obtuse(double quality) const { return thin_ != nullptr && quality < beyond; }
 
  private:

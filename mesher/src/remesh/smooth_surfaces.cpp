@@ -57,8 +57,8 @@ SmoothSurfaces::Surface& SmoothSurfaces::surface(Index patch) const {
   return surface;
 }
 
-// Assigns the corners and centres of the patch's triangles to faces near them: usually to the nearest face,
-// but any near face that they lie straight above or below will do.
+// Makes the corners and centres of the patch's triangles samples, and assigns each to the nearest face or to
+// the face of the last sample, if that is near and the sample lies straight above or below it.
 void SmoothSurfaces::share_out(Index patch, Surface& surface) const {
   std::vector<Index> faces;
   std::vector<std::array<Index, 3>> corners;
@@ -69,10 +69,10 @@ void SmoothSurfaces::share_out(Index patch, Surface& surface) const {
     }
   if (faces.empty()) return;
   const TriangleHierarchy hierarchy(mesh_.points, std::move(corners));
-  Index nearest = none;  // try first the face of the last point
+  Index nearest = none;  // the face of the last point is tried first
   const auto add = [&](const Point& p, double tolerance) {
     const Index hint = std::exchange(nearest, hierarchy.triangle_within(p, tolerance * tolerance, nearest));
-    if (nearest == none) return;  // there are no faces that could keep samples
+    if (nearest == none) return;  // no face is within the tolerance of p, so it is no sample
     const Triangle found = hierarchy.corners(nearest);
     if (nearest != hint || !has_foot(p, found))
       hierarchy.squared_distance_to(p, squared_distance_to(p, found), &nearest);
@@ -145,7 +145,7 @@ bool SmoothSurfaces::edges_near(std::span<const Index> old, std::span<const Face
   return true;
 }
 
-// Returns the largest squared distance of a triangle's centre and the middles of its edges from the patch.
+// Returns the largest squared distance from the patch of a triangle's centre and the middles of its edges.
 double SmoothSurfaces::squared_distance(Index patch, const Triangle& t) const {
   double largest = triangles(patch).squared_distance_to(centre(t), INFINITY);
   for (unsigned k = 0; k < 3; ++k)
@@ -158,7 +158,7 @@ double SmoothSurfaces::squared_distance(Index patch, const Triangle& t) const {
 // bound, whichever is larger.
 bool SmoothSurfaces::samples_are_near(std::span<const Index> old, std::span<const Face> created,
                                       double least_squared_bound) const {
-  std::size_t last = 0;  // try first the face of the last point
+  std::size_t last = 0;  // the face of the last sample is tried first
   for (const Index face : old) {
     if (!smooth(face)) continue;
     const Index patch = mesh_.face_patch[face];
@@ -180,8 +180,8 @@ bool SmoothSurfaces::samples_are_near(std::span<const Index> old, std::span<cons
 }
 
 // Returns whether the created faces are accepted beyond the tolerance. If the old faces are beyond it, the
-// created ones may be farther from the patches than these by the accepted ratio. If not, the created ones
-// must agree with the patches and be no farther from them than the old ones.
+// created ones may be up to the accepted ratio times as far from the patches. Otherwise the created ones must
+// agree with the patches and be no farther from them than the old ones, and samples must be near them.
 bool SmoothSurfaces::are_excused(std::span<const Index> old, std::span<const Face> created,
                                  bool agree) const {
   double farthest = 0;
@@ -196,7 +196,6 @@ bool SmoothSurfaces::are_excused(std::span<const Index> old, std::span<const Fac
   return near && (beyond || samples_are_near(old, created, accepted));
 }
 
-// Returns the cosine of the angle between the normals of a face and of a triangle of the patch.
 double SmoothSurfaces::agreement(Index patch, const Triangle& t, Index triangle) const {
   const Vector n = normal(t), m = normal(triangles(patch).corners(triangle));
   const double lengths = norm(n) * norm(m);
@@ -205,7 +204,7 @@ double SmoothSurfaces::agreement(Index patch, const Triangle& t, Index triangle)
 
 double SmoothSurfaces::worst_agreement(std::span<const Index> faces) const {
   double worst = enough_agreement;
-  Index near = none, patch_of_near = none;  // try first the triangle of the last face
+  Index near = none, patch_of_near = none;  // the triangle near the last face is tried first
   for (const Index face : faces) {
     if (!smooth(face)) continue;
     const Triangle t = corners(face);
@@ -282,8 +281,8 @@ void SmoothSurfaces::take_samples(std::span<const Index> faces) {
   }
 }
 
-// Gives each sample to the nearest face or to one that it lies straight above or below, usually the face of
-// the last sample.
+// Gives each sample to a near face that it lies straight above or below, or else to the nearest face. Tries
+// the face of the last sample first, which usually fits.
 void SmoothSurfaces::give_samples(std::span<const Index> faces) {
   first_sample_.resize(mesh_.faces.size(), none);
   std::size_t last = 0;

@@ -17,9 +17,9 @@
 
 namespace collarmesh::remeshing {
 
-/// The smooth patches of a complex and the mesh faces on them. Decides whether other faces fit the patches,
-/// too. A patch and its faces stay within the tolerance of each other, judged by samples: centres and edges
-/// of the faces are near the patch, and each sampled point of the patch belongs to a face near it. Several
+/// The smooth patches of a complex and the mesh faces on them. Decides whether new faces may replace others.
+/// A patch and its faces stay within the tolerance of each other, judged by samples: centres and edges of the
+/// faces are near the patch, and each sample point of the patch is assigned to a face near it. Several
 /// threads may query it at once.
 class SmoothSurfaces {
  public:
@@ -41,9 +41,9 @@ class SmoothSurfaces {
   /// Returns the point of a smooth patch that is nearest to p. Searches within the distance `near` first,
   /// which is faster if the patch is that near.
   Nearest nearest(Index patch, const Point& p, double near = INFINITY) const;
-  /// Accepts from now on new faces that miss the tolerance, for meshes that were not made within it: no
-  /// farther from the patch than the faces that they replace or, if those are beyond the tolerance
-  /// themselves, up to `ratio` times as far as those. 0: accepts none.
+  /// Accepts from now on also new faces beyond the tolerance, for meshes that were not made within it. They
+  /// may be as far from the patch as the faces that they replace or, if these are beyond the tolerance, too,
+  /// up to `ratio` times as far. 0: accepts no such faces.
   void accept_distant(double ratio) { accepted_ratio_ = ratio; }
   /// Returns whether an edge is within the tolerance of a smooth patch, judged by samples.
   bool edge_is_near(Index patch, const Point& a, const Point& b) const {
@@ -59,18 +59,18 @@ class SmoothSurfaces {
   };
   /// Returns whether the created faces can replace the mesh's faces `old`: they must stay within the
   /// tolerance, and agree with the orientation of the patch well enough or at least as well as the old ones.
-  /// Faces on planar patches always fit. Computes the agreement of the old faces if it is NaN, for callers
-  /// that ask about the same faces again.
+  /// Faces on planar patches always fit. `agreement_of_old`: NaN in the first query about the same old faces;
+  /// computed if it is needed, and kept by the caller for the next query.
   bool fit(std::span<const Index> old, std::span<const Face> created, double& agreement_of_old) const;
   bool fit(std::span<const Index> old, std::span<const Face> created) const {
     double agreement_of_old = NAN;
     return fit(old, created, agreement_of_old);
   }
-  /// Takes the patches' sample points from these faces of the mesh. Call it before the faces are replaced or
+  /// Takes the patches' sample points away from these mesh faces. Call it before the faces are replaced or
   /// moved.
   void take_samples(std::span<const Index> faces);
-  /// Gives the sample points that were taken to the faces that replace the old ones or have moved.
-  /// Precondition: they `fit`.
+  /// Gives the sample points that were taken away to these faces, which replace the old ones or have moved.
+  /// Precondition: these faces `fit`.
   void give_samples(std::span<const Index> faces);
 
   /// Assigns all sample points to faces now instead of at the first query.
@@ -86,8 +86,8 @@ class SmoothSurfaces {
     std::once_flag once;
     std::unique_ptr<TriangleHierarchy> triangles;
     std::vector<Point> samples;
-    std::vector<Index> next_sample;          // next sample of the same face
-    std::vector<double> squared_tolerances;  // tolerances of the samples, if the tolerance varies
+    std::vector<Index> next_sample;          // by sample: the next sample of the same face, or none
+    std::vector<double> squared_tolerances;  // by sample; empty if the tolerance does not vary
   };
 
   const TriangleHierarchy& triangles(Index patch) const { return *surface(patch).triangles; }
@@ -121,7 +121,7 @@ class SmoothSurfaces {
   PatchPoints patch_points_;
   SurfaceTolerance tolerance_;
   mutable std::vector<Surface> surfaces_;
-  mutable std::vector<Index> first_sample_;   // by face: the first of the patch's samples that it has
+  mutable std::vector<Index> first_sample_;   // by face: its first sample, or none
   std::vector<std::array<Index, 2>> moving_;  // patch and sample of points that no face has yet
   double accepted_ratio_ = 0;
   bool on_trial_ = false;

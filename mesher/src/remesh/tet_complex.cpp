@@ -48,7 +48,7 @@ PlcError no_ring(const Point& p) {
 constexpr std::array<Index, 3> lost_face{none, none, none};
 constexpr std::array<Index, 2> lost_edge{none, none};
 
-// Removes the cells that equal `lost`, and their entries in arrays of the same length.
+// Removes the cells that equal `lost`, and their entries in the other arrays.
 template <class Cell, class... Of>
 void drop(const Cell& lost, std::vector<Cell>& cells, std::vector<Of>&... of_cells) {
   std::size_t kept = 0;
@@ -82,8 +82,8 @@ TetComplex::TetComplex(TetMesh& mesh, const KnownNeighbours& neighbours) : mesh_
     curve_edges_.emplace(edge_key(mesh.edges[e][0], mesh.edges[e][1]), e);
 }
 
-// Links neighbours. If `some_are_known`, looks only at sides without a neighbour and at sides that may be
-// faces of the mesh, because their corners are points of such faces.
+// Links neighbours. If `some_are_known`, looks only at sides without a known neighbour, and at sides that may
+// be mesh faces because each of their corners is a corner of a mesh face.
 void TetComplex::link(bool some_are_known) {
   std::vector<std::uint8_t> on_faces(some_are_known ? mesh_.points.size() : 0, 0);
   if (some_are_known)
@@ -126,8 +126,8 @@ void TetComplex::link(bool some_are_known) {
                               });
 }
 
-// Finds pinched vertices: bodies that touch without sharing a face do so in vertices and curves of the
-// complex only.
+// Finds pinched vertices. Looks only at vertices on vertices and curves of the complex, because bodies that
+// touch without sharing a face touch only there.
 void TetComplex::find_pinched_vertices() {
   const auto corners = found_in_ranges<Index>(tets_.size(), [&](std::size_t t, std::vector<Index>& found) {
     for (const Index v : tets_[t].corners)
@@ -305,7 +305,7 @@ std::span<const Index> TetComplex::replace(const Replacement& replacement) {
       open_.pop_back();
     }
   }
-  // The remaining faces of the border have no tet on this side any more.
+  // At the remaining faces of the border no tet is left on the side of the cavity.
   for (const OpenFace& open : open_) {
     if (open.tet == none) continue;
     changing(open.tet).neighbours[open.corner] = none;

@@ -69,7 +69,7 @@ class TetComplex {
   }
   Vector edge(Index a, Index b) const { return mesh_.points[b] - mesh_.points[a]; }
   bool on_curve(Index a, Index b) const { return curve_edges_.contains(edge_key(a, b)); }
-  /// Returns whether ab is an edge of a mesh face. Always true at a pinched vertex a.
+  /// Returns whether ab is an edge of a mesh face or lies on a curve. Returns true if a is pinched.
   bool on_faces(Index a, Index b) const;
 
   /// Returns whether the vertex is a corner of any tet.
@@ -77,7 +77,8 @@ class TetComplex {
   /// Returns whether the vertex is pinched: its tets are not all connected by faces, as where bodies touch.
   /// Its star is then incomplete.
   bool pinched(Index vertex) const { return pinched_.contains(vertex); }
-  /// Replaces `found` by the tets around a vertex that are connected by faces.
+  /// Replaces `found` by the tets around a vertex. At a pinched vertex, finds only tets that faces connect to
+  /// one of them.
   void star(Index vertex, std::vector<Index>& found) const;
   /// Returns a tet with these two corners; none if they are not joined.
   Index tet_at_edge(Index a, Index b) const;
@@ -132,7 +133,7 @@ class TetComplex {
   void find_pinched_vertices();
   void make_faces(const Replacement& replacement);
   void set_face(const std::array<Index, 3>& corners, Index face);
-  /// Returns a tet that is about to change.
+  /// Returns a tet for changing it, after recording its state for `undo`.
   Tet& changing(Index tet);
   void set_curve_edge(Index edge, const std::array<Index, 2>& ends);
   void forget_curve_edge(std::size_t edge);

@@ -12,8 +12,8 @@ constexpr double radians = std::numbers::pi / 180;
 // A little below the value of the certificate, because normals turn when vertices move.
 constexpr double least_cosine = ForcedEdges::least_cosine_of_sides - 0.02;
 
-/// Returns the narrowness up to which the angle that forced edges permit, times `share`, may have a sine
-/// below `least`.
+/// Returns the largest narrowness at which ForcedEdges::smallest_angle, times `share`, may have a sine below
+/// `least`.
 double narrowness_of_sine(double least, double share) {
   constexpr double margin = 1e-6;
   const double angle = 2 * std::asin(least) / share;
@@ -22,9 +22,9 @@ double narrowness_of_sine(double least, double share) {
 
 double sine_above(double degrees) { return std::sin((degrees + 2 * ThinShape::rounding) * radians); }
 
-// Returns true for most tets within the bound, much faster than `measure`. The squared radius has a relative
-// error of some units of 2^-53 times longest^3 / (six times the volume). This is below 1e-9 here, because the
-// radius is at least half the longest edge.
+// Returns true only for tets within the bound, and for most of them; much faster than `measure`. Because the
+// radius is at least half the longest edge, the relative error of its square is at most some units of 2^-53
+// times longest^3 / (six times the volume), which is below 1e-9 here.
 bool well_within(const Corners& p, double radius_edge) {
   constexpr double margin = 1e-6, least_volume = 1e-4;
   const Circumsphere sphere = circumsphere(p);

@@ -31,7 +31,7 @@ inline double sine(double signed_square_of_cosine) {
   return std::sqrt(squared_sine(signed_square_of_cosine));
 }
 
-/// Returns the signed squared cosine of the largest angle of the tet's faces.
+/// Returns the signed squared cosine of the largest angle of the tet's faces if it is obtuse, else 1.
 inline double least_cosine_of_faces(const Corners& p) {
   const double ab = squared_distance(p[0], p[1]), ac = squared_distance(p[0], p[2]),
                ad = squared_distance(p[0], p[3]), bc = squared_distance(p[1], p[2]),
@@ -50,14 +50,14 @@ inline double least_cosine_of_faces(const Corners& p) {
   return least;
 }
 
-/// Returns the extreme dihedral angles.
+/// Returns the extreme dihedral angles. For a flat or an inverted tet only `positive` is meaningful.
 inline ExtremeCosines dihedral_cosines(const Corners& p) {
   const Vector ab = p[1] - p[0], ac = p[2] - p[0], ad = p[3] - p[0], bc = p[2] - p[1], bd = p[3] - p[1];
   const Vector n_a = cross(bc, bd), n_b = cross(ad, ac), n_c = cross(ab, ad), n_d = cross(ac, ab);
   if (!(-dot(n_d, ad) > 0)) return {1, -1, false};
   const double a = 1 / squared_norm(n_a), b = 1 / squared_norm(n_b), c = 1 / squared_norm(n_c),
                d = 1 / squared_norm(n_d);
-  // The negated product of outward normals is the cosine of the angle between the faces.
+  // The negated product of the faces' outward unit normals is the cosine of the dihedral angle.
   const auto square = [](double product, double x, double y) {
     return -(product * x) * (std::fabs(product) * y);  // this order keeps products in range at any scale
   };
@@ -79,8 +79,9 @@ inline ExtremeCosines extreme_cosines(const Corners& p) {
   return cosines;
 }
 
-/// Returns whether all dihedral angles lie between the angles with these two squared cosines, the second one
-/// obtuse, and face angles are below the second one. Has no divisions; returns false in close cases.
+/// Returns true only if all dihedral angles lie between the acute angle with the first squared cosine and the
+/// obtuse angle with the second one, and all face angles are below that obtuse angle. Needs no divisions;
+/// returns false in close cases.
 inline bool surely_between(const Corners& p, double squared_cosine, double squared_obtuse_cosine) {
   constexpr double rounding = 1e-9;
   const double acute = squared_cosine * (1 - rounding), obtuse = squared_obtuse_cosine * (1 - rounding);
@@ -88,7 +89,7 @@ inline bool surely_between(const Corners& p, double squared_cosine, double squar
                cd = p[3] - p[2];
   const Vector n_a = cross(bc, bd), n_b = cross(ad, ac), n_c = cross(ab, ad), n_d = cross(ac, ab);
   const double a = squared_norm(n_a), b = squared_norm(n_b), c = squared_norm(n_c), d = squared_norm(n_d);
-  // Counts violations without branches; NaN violates every bound.
+  // Notes violations without branches; NaN violates every bound.
   unsigned beyond = 0;
   const auto require = [&beyond](bool holds) { beyond |= holds ? 0U : 1U; };
   // The negated product of outward normals has the sign of the cosine.
@@ -102,7 +103,7 @@ inline bool surely_between(const Corners& p, double squared_cosine, double squar
   see_edge(n_a, n_d, a * d);
   see_edge(n_a, n_c, a * c);
   see_edge(n_a, n_b, a * b);
-  // Tests a corner of a face, between sides of squared lengths x and y.
+  // Tests the corner of a face between sides of squared lengths x and y; `across`: that of the third side.
   const auto see_corner = [&](double x, double y, double across) {
     const double product = std::min(0.0, x + y - across);
     require(product * product < 4 * obtuse * (x * y));
@@ -150,7 +151,8 @@ class MeasuredTet {
     if (!cosines_) cosines_ = extreme_cosines(places_);
     return *cosines_;
   }
-  /// Returns the width that forced edges leave (ForcedEdges::narrowness). Each call must get the same edges.
+  /// Returns the width that forced edges leave to the tet, relative to its longest edge
+  /// (ForcedEdges::narrowness). Each call must get the same `forced`.
   double narrowness(const ForcedEdges& forced) {
     if (!narrowness_) narrowness_ = forced.narrowness(places_, vertices_);
     return *narrowness_;
@@ -163,17 +165,17 @@ class MeasuredTet {
   std::optional<double> narrowness_;
 };
 
-/// The bounds on the shape of thin tets: on dihedral angles from below and above, and on face angles from
-/// above, as tight as thin places permit. If features meet at less than twice the smallest angle, the lower
-/// bound is half the angle between them. If the input forces an edge of the tet to be short, the lower bound
-/// is half the angle that this edge permits (ForcedEdges::smallest_angle).
+/// The bounds on the shape of thin tets: a lower and an upper bound on dihedral angles, and an upper bound on
+/// face angles. Where the input permits only smaller angles, the lower bound is reduced: to half the angle at
+/// which features meet there, or to ForcedEdges::smallest_angle if the input forces an edge of the tet to be
+/// short; both divided by `tets_across`.
 class ThinShape {
  public:
   static constexpr double largest_angle = largest_angle_of_thin_tets;
   static constexpr double rounding = 1e-6;  ///< degrees, a margin for other ways to compute an angle
 
-  /// `smallest_angle` is in degrees; 0: no tet is thin. Vertices are numbered as in `mesh`. `reserve` is the
-  /// share of the bounds, counted from 0 and from 180 degrees, that is kept in reserve. `forced`: see
+  /// `smallest_angle` is in degrees; 0: no tet is thin. Vertices are numbered as in `mesh`. `reserve`: the
+  /// share of their distance from 0 or 180 degrees by which the bounds are made stricter. `forced`: see
   /// forced_edges_of. `tets_across`: see Bounds.
   ThinShape(const Plc& plc, const TetMesh& mesh, double smallest_angle, double reserve,
             std::shared_ptr<const ForcedEdges> forced, double tets_across = 1);
@@ -211,7 +213,8 @@ class ThinShape {
     return {margin, largest * inverse_squared_sine_of_largest_};
   }
   /// Returns the quality of a tet of positive volume; `sine` is its quality by angles alone (shape_quality).
-  /// At forced edges, small angles count relative to what the edges permit, so that large angles decide.
+  /// If forced edges permit only angles below `deep`, small angles count relative to what these edges permit,
+  /// so that large angles decide.
   double shape_quality_where_forced(MeasuredTet& tet, double sine) const {
     const double forced = sine < largest_forced_sine ? deep_forced_sine(tet) : 1;
     if (forced >= deep) return sine;
@@ -228,8 +231,8 @@ class ThinShape {
     const SquaredMargins margins = squared_margins(extreme_cosines(p), p, corners);
     return std::min(margins.of_smallest, margins.of_largest) >= good_enough;
   }
-  /// Returns true only if both squared margins are above the square of `margin`, which is at least 1. Much
-  /// cheaper than the margins; may return false for some tets with such margins.
+  /// Returns true only if both squared margins are above the square of `margin`, which must be at least 1.
+  /// Much cheaper than computing the margins, but returns false for some such tets, too.
   bool surely_exceeds(double margin, const Corners& p) const {
     const double smallest = margin * sine_, largest = margin * sine_of_largest_;
     return largest < 1 && surely_between(p, 1 - smallest * smallest, 1 - largest * largest);
@@ -269,19 +272,19 @@ class ThinShape {
     return least;
   }
   double forced_sine(MeasuredTet& tet) const;
-  // Returns the same if it is below `deep`, else 1, at less cost.
+  // Returns `forced_sine` if it is below `deep`, else 1. Cheaper than `forced_sine`.
   double deep_forced_sine(MeasuredTet& tet) const;
 
   double smallest_, sine_, cosine_, sine_of_largest_, inverse_squared_sine_of_largest_;
-  double share_;  // tets must keep this share of the angle that creases or forced edges permit; includes the
-                  // reserve
+  double share_;  // factor of the lower bounds that creases and forced edges give; grows with the reserve and
+                  // decreases with `tets_across`
   double deep_narrowness_;              // narrower tets may have forced sines below `deep`
   std::vector<double> sine_at_vertex_;  // empty if no crease is sharp enough to lower the bound
   std::shared_ptr<const ForcedEdges> forced_;
 };
 
-/// Returns the forced edges of a mesh in its current state, whose faces must be set. Null unless they may
-/// lower the bounds.
+/// Returns the forced edges of a mesh in its current state; null if `lower_bounds` is false or the mesh has
+/// no `features`. Precondition: the mesh's faces are set.
 std::shared_ptr<const ForcedEdges> forced_edges_of(const Plc& plc, const TetMesh& mesh, bool lower_bounds);
 
 /// Marks the tets outside collars whose circumradius / shortest edge is above the bound.

@@ -7,8 +7,8 @@
 
 namespace collarmesh::remeshing {
 
-/// The former values of an array's entries that change during a trial, so that they can be restored. The
-/// array may grow and shrink at its end.
+/// A record of the former values of array entries that change during a trial, so that they can be restored.
+/// The array may grow and shrink at its end.
 template <class Values>
 class UndoLog {
  public:

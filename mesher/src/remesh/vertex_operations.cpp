@@ -13,7 +13,7 @@ namespace collarmesh::remeshing {
 
 namespace {
 
-// The first step of a moving vertex, relative to its shortest edge; steps shrink afterwards.
+// The first step by which a vertex is moved, relative to its shortest edge. Later steps are shorter.
 constexpr double first_step = 0.4;
 
 }  // namespace
@@ -27,7 +27,7 @@ bool Operations::find_cone_of_vertex(Index vertex) {
   return make_cone_of_vertex(vertex);
 }
 
-// Makes the cone from the vertex's tets.
+// Completes the cone of a vertex from `cone_.tets`. Returns false if a tet or a face at it has to stay.
 bool Operations::make_cone_of_vertex(Index vertex) {
   const bool on_feature = mesh_.features[vertex].dimension < 3;
   for (const Index t : cone_.tets) {
@@ -57,7 +57,7 @@ bool Operations::find_cone_of_edge(Index a, Index b) {
   return ring_.tets.size() <= largest_ring && make_cone_of_edge(a, b) && faces_are_of_one_patch();
 }
 
-// Makes the cone from the edge's ring.
+// Makes the cone from the edge's ring. Returns false if a tet or a face at the edge has to stay.
 bool Operations::make_cone_of_edge(Index a, Index b) {
   const std::size_t n = ring_.tets.size(), m = ring_.link.size();
   cone_.clear();
@@ -91,7 +91,7 @@ bool Operations::faces_are_of_one_patch() const {
          patches[cone_.faces[0]] == patches[cone_.faces[1]];
 }
 
-// Adds to the rim the edge of a face that is opposite a corner, oriented like the face.
+// Adds a face to the cone, and to the rim the edge of the face opposite this corner, oriented like the face.
 void Operations::add_to_rim(Index face, Index opposite) {
   const auto& v = mesh_.faces[face];
   const auto i = static_cast<unsigned>(std::ranges::find(v, opposite) - v.begin());
@@ -100,8 +100,9 @@ void Operations::add_to_rim(Index face, Index opposite) {
   cone_.rim_face.push_back(face);
 }
 
-// Calls `passes` for the tet between the apex and each face of the hull, two faces at a time, cyclically from
-// `first_pair` on. Stops at the first call that returns false and returns its pair, else `all_passed`.
+// Calls `passes(i, cosines)` for each face i of the hull, with the angles of its tet with the apex. Measures
+// a pair of faces at a time, cyclically from `first_pair` on. Stops at the first call that returns false and
+// returns its pair; returns `all_passed` if none does.
 template <class Passes>
 std::size_t Operations::for_each_shape(const Point& apex, std::size_t first_pair, const Passes& passes) {
   if (cone_.shapes.empty()) cone_.shapes.assign(cone_.hull, mesh_.points);
@@ -136,8 +137,8 @@ double Operations::worst_at_vertex(Index vertex) {
   return cone_.worst;
 }
 
-// Returns the quality of the worst tet of the cone with an apex; -1 if it is not above `above` or if the rule
-// forbids a tet. Faces that have the apex as a corner do not count.
+// Returns the quality of the worst tet between this apex and a face of the hull; -1 if it is not above
+// `above` or if the rule forbids a tet. Leaves out faces that have the apex as a corner.
 double Operations::quality_around(const Point& apex, Index id, double above) {
   const AngleRule* rule = rule_.by_angles();
   return rule != nullptr ? quality_by_angles(*rule, apex, id, above) : quality_by_tets(apex, id, above);
@@ -182,7 +183,7 @@ bool Operations::may_be_made(const Point& apex, const std::array<Index, 4>& corn
   return rule_.allows(with_apex(apex, corners), corners, quality);
 }
 
-// Returns whether the rule allows the edges at a vertex after its move.
+// Returns whether the rule allows all edges at a vertex of the current cone after its move.
 bool Operations::edges_allowed(Index vertex, const Point& from, const Point& to) const {
   const auto& points = mesh_.points;
   for (const auto& face : cone_.hull)
@@ -247,7 +248,7 @@ Operations::Freedom Operations::on_patch(Index patch, const Point& p) {
   return {{u, cross(n, u), {}}, 2, patch};
 }
 
-// Returns where a vertex may be moved: anywhere, on its patch, or nowhere.
+// Returns where a vertex may be moved: anywhere or on its patch; nothing if it must stay or lies on a curve.
 std::optional<Operations::Freedom> Operations::freedom(Index vertex) {
   const auto& feature = mesh_.features[vertex];
   if (feature.dimension == 3) return everywhere;
@@ -262,8 +263,8 @@ Point Operations::back_on_feature(const Point& p, const Point& from, const Freed
   return p - dot(p - patch.origin, patch.normal) * patch.normal;
 }
 
-// Searches for the best place by pattern search from `start`, whose quality is `best`. Returns the place and
-// its quality.
+// Searches for the best place of the apex by pattern search from `start`; its quality must be above `best`.
+// Returns this place and its quality; if none is found, returns `start` and `best`.
 std::pair<Point, double> Operations::best_place(const Point& start, Index id, const Freedom& freedom,
                                                 double best) {
   const auto& points = mesh_.points;
@@ -376,9 +377,9 @@ void Operations::move_to_face(Index vertex, Change& change) {
   if (place) fill_move(vertex, *place, best, change);
 }
 
-// Returns places on the patch of `vertex`. For each other vertex of the current cone: the place nearest to
-// it, if it lies on a feature, and the place nearest to its projection onto the line of the longest edge from
-// `vertex` to the cone.
+// Returns places on the patch of `vertex`. For each other vertex of the current cone they are: the place
+// nearest to that vertex, if it lies on a feature; and the place nearest to its projection onto the line of
+// the longest edge at `vertex`.
 std::vector<Point> Operations::facing_places(Index vertex, const Freedom& where) {
   const Point& p = mesh_.points[vertex];
   std::vector<Index> others;
@@ -509,9 +510,9 @@ bool Operations::may_collapse(Index vertex, Index onto) {
   return shared == 2;
 }
 
-// Checks the link condition, in the mesh and on its faces: vertices and edges that are joined to both ends of
-// the edge must be joined to the edge, otherwise cells would coincide. For a vertex inside a region, positive
-// volumes imply it.
+// Returns whether the collapse keeps the link condition, in the mesh and on its faces: vertices and edges
+// that are joined to both ends of the edge must be joined to the edge, too, because otherwise cells would
+// coincide. For a vertex inside a region, positive volumes imply this condition.
 bool Operations::keeps_topology(Index vertex, Index onto) {
   if (mesh_.features[vertex].dimension == 3) return true;
   if (complex_.pinched(onto)) return false;
