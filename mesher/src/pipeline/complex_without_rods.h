@@ -15,7 +15,7 @@ struct ComplexWithoutRods {
   Plc plc;
   /// By feature of this complex: the same feature of the whole complex; none for the vertices on axes.
   std::vector<Index> vertex_of, curve_of, patch_of, region_of;
-  std::vector<Index> triangle_of;  ///< by triangle, likewise
+  std::vector<Index> triangle_of;  ///< by triangle of this complex: the same triangle of the whole complex
 
   /// Returns the tolerance of this complex that corresponds to one of the whole complex.
   SurfaceTolerance tolerance_from(const SurfaceTolerance& whole) const;

@@ -42,7 +42,8 @@ bool has_flat_tet(const TetMesh& mesh) {
   return false;
 }
 
-/// Makes the constrained tetrahedra of a complex that has the features of the job's complex.
+/// Puts the constrained tetrahedra of a complex into the job. The complex must have the features of the
+/// job's.
 void fill(MeshJob& job, const Plc& plc) {
   job.control.begin("tetrahedralize", 0.06, 0.2);
   job.control.watch(
@@ -63,13 +64,13 @@ bool may_have_ladders(const MeshJob& job, double size) {
          has_thin_shells(*job.plc, *job.refined_with.bounds.tolerance, size);
 }
 
-/// Returns whether a number of vertices exceeds the limit that was given.
+/// Returns whether a number of vertices exceeds the limit on vertices, if there is one.
 bool exceeds_vertices(const MeshJob& job, std::size_t vertices) {
   const std::size_t most = job.refined_with.max_vertices;
   return most > 0 && vertices > most;
 }
 
-/// Returns the complex with its long narrow strips divided to the size.
+/// Returns the complex with its long narrow strips divided like ladders, with rungs about a size apart.
 Plc divided_strips(const MeshJob& job, double size, const Vector& diagonals) {
   constexpr double share_of_tolerance = 0.05;
   const auto may_move = [&](Index triangle) {
@@ -97,7 +98,7 @@ std::size_t fill_ladders(MeshJob& job, const Plc& divided) {
 }
 
 /// Throws Hopeless if so many tets miss their bounds before coarsening and improvement that too many will
-/// miss them afterwards. On real parts these stages divide the share by at most 2.6.
+/// miss them afterwards: more than `times_before` times as many as may miss them then.
 void require_few_misshapen(MeshJob& job) {
   constexpr std::size_t times_before = 4;
   TetMesh mesh = job.made.result.mesh;  // a copy, so that later stages get the mesh without marks
@@ -137,11 +138,11 @@ bool attempt(MeshJob& job, const std::function<void()>& work) {
 
 /// Divides strips of the complex like ladders, if it has any, and fills it with tetrahedra. Returns whether
 /// the mesh is good: hardly any tet misses its bounds or has a far too long edge, and the limit on vertices
-/// is kept. Vertices on opposite sides of a good mesh face each other, so no further work is needed:
-/// collapses that ignore bounds would do harm. Rounding decides which diagonals of the ladders' cells leave
-/// flat tets. So tries diagonals along three directions, and along others if at most five tets of the best
-/// mesh so far are poor. Stops at a mesh without poor tets, or when a try is given up before coarsening, has
-/// too long edges or exceeds the limit on vertices. A time limit does not lose the best mesh.
+/// is kept. In a good mesh, vertices on opposite sides of strips face each other, so no further work is
+/// needed: collapses that ignore bounds would do harm. Rounding decides which diagonals of the ladders' cells
+/// leave flat tets. So tries diagonals along three directions, and along more if at most five tets of the
+/// best mesh so far are poor. Stops at a mesh without poor tets, or when a try is given up before coarsening,
+/// has too long edges or exceeds the limit on vertices. A time limit cannot lose the best mesh so far.
 bool is_good_with_ladders(MeshJob& job) {
   constexpr std::array<Vector, 7> directions{{{0.36, 0.48, 0.8},
                                               {-0.36, 0.48, 0.8},
@@ -238,7 +239,7 @@ void tetrahedralize(MeshJob& job, Hope hope) {
   MeshResult& result = job.made.result;
   job.neighbours = KnownNeighbours();
   result.has_narrow_cells = job.refined_with.bounds.lower_where_forced = true;
-  // Meshes with ladders do not depend on the seed.
+  // Meshes with ladders do not depend on the seed, so they are tried only with the first seed.
   if (job.refined_with.seed == job.given.mesh.seed && is_good_with_ladders(job)) return;
   fill(job, *job.plc);
   job.control.begin("remesh", 0.2, 0.6);

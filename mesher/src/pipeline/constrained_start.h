@@ -29,12 +29,13 @@ bool fill_rods(MeshJob& job);
 void tetrahedralize(MeshJob& job, Hope hope);
 
 /// Relaxes, coarsens and improves the mesh again, as long as that reduces the number of tets that miss their
-/// bounds. With Hope::good, throws Hopeless if many tets miss them. If the time for a further attempt runs
-/// out, the mesh at hand stays.
+/// bounds. With Hope::good, throws Hopeless if many tets miss their bounds at first. If the time for a
+/// further attempt runs out, keeps the best mesh so far.
 void settle(MeshJob& job, Hope hope);
 
-/// Mends flat tets of a refined and coarsened mesh that miss their bounds, by dividing edges so that vertices
-/// on the two sides of a tet face each other. Keeps the result if fewer tets miss their bounds then.
+/// Removes flat tets that miss their bounds from a refined and coarsened mesh, by dividing edges so that
+/// vertices on the two sides of a tet lie opposite each other. Uses the result if fewer tets miss their
+/// bounds then.
 void mend_flat_tets(MeshJob& job);
 
 }  // namespace collarmesh::pipeline

@@ -21,7 +21,7 @@ struct Body {
   double thickness() const { return area > 0 ? 2 * volume / area : 0; }
 };
 
-// Returns the volumes and areas of the regions but the outside, largest volume first.
+// Returns the volumes and areas of all regions except the outside, largest volume first.
 std::vector<Body> bodies_of(const Plc& plc) {
   std::vector<Body> bodies(plc.regions.size());
   for (std::size_t r = 1; r < bodies.size(); ++r) bodies[r].volume = std::fabs(plc.regions[r].volume);

@@ -27,7 +27,7 @@ namespace collarmesh::pipeline {
 
 namespace {
 
-/// With thin shells, a refinement that needs more vertices takes longer than constrained tetrahedra.
+/// For thin shells, a refinement that needs more vertices than this takes longer than constrained tetrahedra.
 constexpr std::size_t few_vertices = 15'000;
 
 /// Moves the vertices of a complete mesh onto the exact geometry, if there is any.
@@ -50,7 +50,7 @@ void raise_order(MeshJob& job) {
   if (job.made.second_order.cancelled) job.control.stop();
 }
 
-/// Returns the number of vertices without mid-edge nodes.
+/// Returns the number of vertices that are corners of tets, not mid-edge nodes.
 std::size_t corner_count(const TetMesh& mesh) {
   std::vector<Index> corners;
   for (const auto& tet : mesh.tets) corners.insert(corners.end(), tet.begin(), tet.end());
@@ -58,8 +58,8 @@ std::size_t corner_count(const TetMesh& mesh) {
   return corners.size();
 }
 
-/// Unites the two smooth patches of each wall, layer or shell. Volumes that chords cut off on both sides
-/// cancel only if the chords are equally long.
+/// Returns sets of patches that unite the two smooth patches of each wall, layer or shell. Volumes that
+/// chords cut off on both sides cancel only if the chords are equally long.
 DisjointSets sides_of_walls(const Plc& plc) {
   std::vector<std::vector<Index>> smooth(plc.regions.size());
   for (Index p = 0; p < plc.patches.size(); ++p)
@@ -189,7 +189,8 @@ bool MeshMaker::is_good_with_sheaths(std::vector<SheathedRod>& rods) {
 }
 
 /// Returns whether a refinement probably makes many times the elements that are needed. Returns true also for
-/// cylinders that nearly touch, which need few elements, so `refines_with_few_vertices` decides afterwards.
+/// cylinders that nearly touch, where it makes few elements; so `refines_with_few_vertices` decides
+/// afterwards.
 bool MeshMaker::may_be_better_constrained() const {
   if (job_.start != Start::automatic || !may_start_constrained(job_.given) ||
       !may_take_constrained(*job_.plc))

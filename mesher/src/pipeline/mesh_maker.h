@@ -14,11 +14,11 @@
 namespace collarmesh::pipeline {
 
 /// A maker of meshes of one complex after another, with given seeds. If a refinement makes far too many tets,
-/// it starts from constrained tetrahedra instead.
+/// the maker starts again, from constrained tetrahedra.
 class MeshMaker {
  public:
-  /// Whether edges of a mesh made from constrained tetrahedra must be about as short as the target lengths,
-  /// as edges of a refined mesh are.
+  /// The edge lengths permitted in a mesh made from constrained tetrahedra: any, or only about the target
+  /// lengths, as in a refined mesh.
   enum class Lengths { any, kept };
 
   /// Keeps a reference to the job. `source` makes the complexes; null if there is only one.
@@ -34,31 +34,31 @@ class MeshMaker {
   /// many tets miss their bounds.
   void make(const Plc& plc, std::uint64_t seed);
 
-  /// Meshes a complex when other ways have failed: from its constrained tetrahedra if that keeps every
-  /// guarantee; else by refinement, if more vertices are allowed than `tried`, at which a refinement of this
-  /// complex has ended; else, or if the refined mesh misses guarantees at a far larger share of its tets,
-  /// from constrained tetrahedra that need only keep the guarantees that do not concern shapes. `why` is the
-  /// reason that a note gives for constrained tetrahedra.
+  /// Meshes a complex when other ways have failed. Uses constrained tetrahedra if they keep every guarantee.
+  /// Otherwise refines, if more vertices are allowed than `tried`, the number at which a refinement of this
+  /// complex ended before. If that makes no mesh, or one that misses far more guarantees (misses_far_less),
+  /// uses constrained tetrahedra that keep all guarantees except those on shapes. `why`: the reason that a
+  /// note gives for constrained tetrahedra.
   void make_anyhow(const Plc& plc, const std::string& why, std::size_t tried);
 
   /// Meshes a complex from its constrained tetrahedra. Returns nothing if there are none, if the options ask
   /// for another start, if the mesh misses guarantees other than bounds on shapes or, with Hope::good, if
-  /// many tets miss these. The job keeps its mesh.
+  /// many tets miss these bounds. Does not change the mesh that the job keeps.
   std::optional<PipelineResult> from_constrained(const Plc& plc, const std::string& why, Hope hope);
 
   /// If few tets of a mesh made from constrained tetrahedra miss the bounds on their shapes, and nothing else
   /// is missed, makes it again with further seeds. Keeps the mesh with the fewest findings.
   void try_seeds_of_constrained(const Plc& plc);
 
-  /// Uses a mesh made from the constrained tetrahedra if it keeps every guarantee and, if `lengths` asks for
-  /// it, the target lengths. Returns whether it is used. Tries each complex only once.
+  /// Makes a mesh from the constrained tetrahedra. Uses it if it keeps every guarantee and the permitted
+  /// lengths. Returns whether it is used. After a failure, does not try the same complex again.
   bool take_constrained(const Plc& plc, const std::string& why, Lengths lengths = Lengths::any);
 
-  /// Removes and returns the last mesh of this complex that `take_constrained` did not use although it misses
-  /// only few bounds on shapes, if there is one.
+  /// Removes and returns the last mesh of this complex that `take_constrained` did not use although few tets
+  /// miss bounds on shapes and nothing else is missed, if there is one.
   std::optional<PipelineResult> take_nearly_good() { return std::exchange(nearly_good_, std::nullopt); }
-  /// Returns the number of vertices of the last mesh made from constrained tetrahedra of this complex, also
-  /// of one that was given up; 0: there is none.
+  /// Returns the number of vertices of the last mesh made from constrained tetrahedra of this complex, even
+  /// if that mesh was given up; 0: there is none.
   std::size_t constrained_vertices() const { return constrained_vertices_; }
   /// Uses a mesh made from constrained tetrahedra of the job's current complex.
   void use_constrained(PipelineResult constrained);
@@ -70,8 +70,8 @@ class MeshMaker {
   /// Returns whether the last mesh was refined to many times the predicted number of tets, and coarsened.
   bool was_far_too_fine() const { return was_far_too_fine_; }
 
-  /// Whether the kept mesh started from constrained tetrahedra. Set it when an earlier mesh is kept after
-  /// all.
+  /// Returns whether the kept mesh started from constrained tetrahedra. Callers that restore an earlier mesh
+  /// must set this again.
   bool is_constrained() const { return is_constrained_; }
   void set_constrained(bool constrained) { is_constrained_ = constrained; }
 
@@ -87,8 +87,8 @@ class MeshMaker {
 
   /// Multiplies the surface tolerance of first order by this share in further meshes of this complex.
   void come_nearer(const Plc& plc, double share);
-  /// Multiplies the tolerance on each smooth patch by the patch's share. If a side of a wall has a share
-  /// below 1 and the tolerances of the two sides differ, gives both sides the smaller tolerance instead.
+  /// Multiplies the tolerance on each smooth patch by the patch's share. But if a side of a wall has a share
+  /// below 1 and the tolerances of the two sides differ, gives both sides the smaller of these tolerances.
   void come_nearer(const Plc& plc, const std::vector<double>& shares);
 
   void set_narrow_cells(NarrowCells cells) { narrow_cells_ = cells; }
@@ -96,7 +96,7 @@ class MeshMaker {
   void set_fineness(Fineness fineness) { fineness_ = fineness; }
 
  private:
-  /// The arguments of `take_constrained`.
+  /// The arguments of a call of `take_constrained`.
   struct Constrained {
     std::string why;
     Lengths lengths;
@@ -126,8 +126,8 @@ class MeshMaker {
   std::optional<Constrained> constrained_;  // how `take_constrained` made the kept mesh
   std::optional<PipelineResult> nearly_good_;
   std::size_t constrained_vertices_ = 0;
-  const Plc* no_rods_ = nullptr;               // the complex whose rods had no good mesh
-  const Plc* no_sheaths_ = nullptr;            // the complex whose rods inside regions had no good mesh
+  const Plc* no_rods_ = nullptr;               // the complex for which rings around rods made no good mesh
+  const Plc* no_sheaths_ = nullptr;            // likewise, for rods inside other regions
   const Plc* hopeless_ = nullptr;              // the complex whose constrained tetrahedra are not tried
   std::optional<SurfaceTolerance> tolerance_;  // tolerance of the current complex
   std::optional<SurfaceTolerance> nearer_;     // smaller tolerance for another try, after regions lost volume

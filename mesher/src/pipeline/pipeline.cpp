@@ -64,7 +64,7 @@ class SoupSource : public ComplexSource {
  private:
   std::span<const PolygonSoup> soups_;
   const PlcOptions& options_;
-  std::optional<Plc> first_;  // the first complex, to whose numbers of features the options refer
+  std::optional<Plc> first_;  // the first complex; the options refer to its feature numbers
 };
 
 void require_valid(const PipelineOptions& options) {

@@ -30,8 +30,8 @@ constexpr double reached_collar_angle = 130;
 
 /// A comparison of the number of vertices of a refinement with the number that its sizes ask for. It is
 /// costly to compute the latter number, and to find out whether thin features may cause more vertices. So
-/// both are done only if a refinement inserts many vertices, and the number is computed only as far as a
-/// comparison needs it.
+/// both are done only if a refinement inserts many vertices, and the computation stops as soon as the
+/// comparison is decided.
 class VertexCounter {
  public:
   VertexCounter(const MeshJob& job, Fineness fineness) : job_(job), fineness_(fineness) {}
@@ -115,7 +115,7 @@ class VertexCounter {
   bool exceeded_ = false;
   std::optional<prediction::Shape> shape_;
   std::optional<prediction::TetCounter> tets_;
-  double most_ = 0;  // the number that the sizes ask for, or less if it is not known yet
+  double most_ = 0;  // the number that the sizes ask for; while it is not known, a lower limit on it
   bool is_known_ = false;
   std::optional<bool> thin_;  // the answer of may_be_thin
 };

@@ -82,7 +82,7 @@ void insert_where_poor(MeshJob& job, remeshing::EditableMesh& edited) {
 
 }  // namespace
 
-// Uses one data structure for coarsening and improvement.
+// Builds one EditableMesh for both coarsening and improvement.
 void reshape(MeshJob& job, const std::vector<Index>& fixed) {
   if ((!job.options.coarsen && job.options.improve == 0) || job.made.result.status != MeshStatus::complete) {
     job.neighbours = KnownNeighbours();

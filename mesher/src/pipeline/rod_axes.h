@@ -19,12 +19,12 @@ class RodAxes {
   /// Returns the distance from a point to the axis of one rod.
   double distance(Index rod, const Point& p) const;
 
-  /// Returns whether a rod's axis has two places that are farther than `along` from each other along the
-  /// axis, but nearer than `across` in space.
+  /// Returns whether a rod's axis has two places whose distance is above `along` along the axis, but below
+  /// `across` in space.
   bool comes_near_itself(Index rod, double along, double across) const;
 
-  /// Returns, sorted, the rods whose axes are nearer to a point than `room` times the reach of their sheath,
-  /// plus `more`.
+  /// Returns, sorted, the rods whose axes are at a distance of at most `room` times the reach of their sheath
+  /// plus `more` from a point.
   std::vector<Index> rods_near(const Point& p, double room, double more) const;
 
  private:

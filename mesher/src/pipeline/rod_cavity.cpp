@@ -10,7 +10,8 @@ namespace collarmesh::pipeline {
 
 namespace {
 
-// Pieces of tets shorter than this, relative to the sheath's reach, are not halved again.
+// Pieces of tets whose longest edge is shorter than this, relative to the sheath's reach, are not halved
+// again.
 constexpr double between_places = 0.4;
 
 /// Returns the corners of a tet's face opposite a corner, with the normal away from the tet.

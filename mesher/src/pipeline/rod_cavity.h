@@ -16,7 +16,8 @@ namespace collarmesh::pipeline {
 /// Thrown if there is no room for a sheath.
 struct NoRoom {};
 
-/// The refined mesh of a complex without rods, and what all cavities in it need. Keeps references.
+/// The refined mesh of a complex without rods, and the data that all cavities in it share. Keeps references
+/// to all arguments.
 struct MeshAroundRods {
   MeshAroundRods(const TetMesh& refined, const ComplexWithoutRods& of, const std::vector<SheathedRod>& in_it)
       : mesh(refined),

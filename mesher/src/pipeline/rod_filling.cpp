@@ -57,7 +57,8 @@ class GapComplex {
     return number;
   }
 
-  /// Returns the triangles of a plane between the rims of sheaths and the rest of the mesh.
+  /// Returns a complex of the part of a host's plane between the cavity's outline (`edges`) and the sheath's
+  /// rims.
   Plc plane_between(Index host, const RodCavity::Edges& edges) const {
     PolygonSoup soup;
     soup.begin_facet();
@@ -81,7 +82,7 @@ class GapComplex {
     options.require_solid = false;
     return build_plc(std::vector{soup}, options);
   }
-  /// Returns the loops of vertices along edges around faces.
+  /// Returns the loops of vertices that directed edges form. Throws NoRoom if two edges begin at one vertex.
   static std::vector<std::vector<Index>> loops_of(const RodCavity::Edges& edges) {
     std::map<Index, Index> after;
     for (const auto& [a, b] : edges)

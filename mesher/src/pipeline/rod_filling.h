@@ -34,7 +34,8 @@ struct RodFilling {
 };
 
 /// Fills the gap between a sheath and the walls of its cavity. Returns nothing if it was cancelled. Throws
-/// NoRoom if the faces there cannot stay undivided, and PlcError if features are too near each other.
+/// NoRoom if triangles of the walls or the skin would be divided, and PlcError if features are too near each
+/// other.
 std::optional<RodFilling> fill_cavity(const Plc& plc, MeshAroundRods& around, Index rod, double room,
                                       const Execution& execution);
 

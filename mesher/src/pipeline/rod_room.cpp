@@ -14,12 +14,12 @@ namespace collarmesh::pipeline {
 
 namespace {
 
-// Smallest distance of other features from the axis, in terms of the sheath's reach. The tets that make room
-// for a sheath reach some 1.4 to 1.8 times as far, and those around them are about as large as the sheath is
-// wide.
+// Smallest distance of other features from the axis, in multiples of the sheath's reach. The tets that make
+// room for a sheath extend to 1.4 to 1.8 times its reach, and the tets around these are about as large as the
+// sheath is wide.
 constexpr double clearance = 3;
-// Places that are farther than this from each other along an axis, in terms of the sheath's reach, must be
-// far from each other in space, too. Bends of axes with sheaths are so slight that nearer places cannot meet.
+// Places whose distance along an axis is above this multiple of the sheath's reach must be far from each
+// other in space, too. Bends of axes with sheaths are so slight that places less far apart cannot meet.
 constexpr double along_itself = 8;
 
 /// The features of a complex, for measuring how far a rod's axis is from the features that are no part of

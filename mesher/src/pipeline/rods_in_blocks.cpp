@@ -20,8 +20,8 @@ namespace collarmesh::pipeline {
 
 namespace {
 
-// Widths of the cavity for a sheath, relative to the sheath. They are tried in this order, because rounding
-// of points decides whether a cavity can be filled.
+// Widths of the cavity for a sheath, relative to the sheath, in the order in which they are tried. Several
+// are needed, because rounding of points decides whether a cavity can be filled.
 constexpr std::array<double, 3> rooms{1.4, 1.6, 1.8};
 
 /// Puts rods and sheaths into a mesh, in the place of the tets of their cavities.
@@ -211,8 +211,8 @@ bool fill_in_some_room(const Plc& plc, MeshAroundRods& around, Index rod, RodFil
   return true;
 }
 
-/// Puts rods into the refined mesh of the complex without them. Returns whether it did. Otherwise some rods
-/// have no room, and it removes these from the list; or it was cancelled, and changes nothing.
+/// Puts rods into the refined mesh of the complex without them. Returns false if some rods have no room; it
+/// then only removes these from the list. Returns false, too, if cancelled; it then changes nothing.
 bool insert_rods(const Plc& plc, const ComplexWithoutRods& without, std::vector<SheathedRod>& rods,
                  TetMesh& mesh, std::vector<Index>& fixed, const Execution& execution) {
   MeshAroundRods around(mesh, without, rods);
@@ -241,8 +241,8 @@ bool insert_rods(const Plc& plc, const ComplexWithoutRods& without, std::vector<
 /// them, get about the size of the sheaths, so that cavities touch no other features.
 void refine_without(MeshJob& job, const ComplexWithoutRods& without, const std::vector<SheathedRod>& rods,
                     Fineness fineness) {
-  // In terms of the sheath's reach: the size of these tets, and the distance from the axis up to which tets
-  // get this size.
+  // The size of these tets, and the distance from the axis up to which tets get this size; both in multiples
+  // of the sheath's reach.
   constexpr double size_beside = 1.5, as_far_as = 2.2;
   const RodAxes axes(rods);
   const Plc* const whole = job.plc;
@@ -272,7 +272,7 @@ void refine_without(MeshJob& job, const ComplexWithoutRods& without, const std::
 }
 
 /// Returns whether all tets of a rod and its sheath keep the bounds on the angles of thin tets. Tets miss
-/// them where rings are near each other, as in a bend, but layers are far apart.
+/// them where rings of vertices are much nearer to each other than layers are, as in a bend.
 bool keeps_angles(const TetMesh& mesh, double thin_angle) {
   return std::ranges::all_of(mesh.tets, [&](const std::array<Index, 4>& tet) {
     const auto& p = mesh.points;

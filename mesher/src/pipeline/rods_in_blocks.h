@@ -12,11 +12,11 @@ namespace collarmesh::pipeline {
 /// with their sheaths. Throws Ended.
 std::vector<SheathedRod> find_sheathed_rods(MeshJob& job);
 
-/// Makes a mesh of a complex with such rods: refines the complex without them, and puts their tetrahedra and
-/// those of their sheaths in the place of the elements there. Removes from the list the rods for which the
-/// refined mesh has no room, and refines once more with these rods in the complex. Sets `fixed` to the
-/// vertices of the rods that stay in the list; coarsening should not move them. Returns whether it made such
-/// a mesh within the limit on vertices. Throws Ended, FarTooFine, and PlcError.
+/// Makes a mesh of a complex with sheathed rods: refines the complex without the rods, and replaces the
+/// elements around their axes by the tetrahedra of the rods and their sheaths. If the refined mesh has no
+/// room for some rods, removes these from the list, and refines once more with these rods in the complex.
+/// Sets `fixed` to the vertices of the rods that stay in the list; coarsening should not move them. Returns
+/// whether it made such a mesh within the limit on vertices. Throws Ended, FarTooFine, and PlcError.
 bool refine_around_rods(MeshJob& job, std::vector<SheathedRod>& rods, std::vector<Index>& fixed,
                         Fineness fineness);
 

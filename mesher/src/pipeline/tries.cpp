@@ -27,8 +27,8 @@ namespace collarmesh::pipeline {
 
 namespace {
 
-/// Sets the size with which features are compared, and the tags of patches and curves that have sizes. Sets
-/// nothing if there is a size field, so that no feature is collapsed.
+/// Sets the size relative to which features are small, and the tags of patches and curves with sizes of their
+/// own. Sets nothing if there is a size field, so that no feature is collapsed.
 void find_feature_size(const MeshOptions& mesh, RepairOptions& repair) {
   if (mesh.size_field) return;
   double size = mesh.size;
@@ -122,7 +122,8 @@ void Tries::mesh_any_repaired(SoupPipelineResult& all) {
   const bool gave_up_constrained = maker_.has_given_up_constrained(all.plc);
   bool has_mesh = end == End::missed, built_last = true;
   std::optional<Point> place;
-  // If places far thinner than the sizes spoil the mesh, a change at any of them may help.
+  // A repair must change something at the first finding. But if the refinement was far too fine, a change at
+  // any place far thinner than the sizes may help.
   if (!made.check.findings.empty() && !maker_.was_far_too_fine()) place = made.check.findings.front().where;
   if (end == End::missed && come_nearer_where_missed(all.plc)) return;
   for (const RepairOptions& repair : repairs) {
@@ -182,7 +183,7 @@ void Tries::mesh_any_repaired(SoupPipelineResult& all) {
 
 /// Repairs the input with a larger tolerance if the repaired complex has creases so sharp that refinement
 /// would hardly end, the larger tolerance leaves none nearly as sharp, and nothing is lost. Sets the repair
-/// that is used, and returns a note of it.
+/// that is used, and returns a note about it; empty if nothing changed.
 std::string Tries::repair_sharp_creases(RepairOptions& repair, SoupPipelineResult& all) {
   // An angle in degrees, and the factor by which a larger tolerance must enlarge the smallest angle.
   constexpr double too_sharp = 0.1, blunter = 3;
@@ -213,8 +214,8 @@ std::string Tries::repair_sharp_creases(RepairOptions& repair, SoupPipelineResul
 }
 
 /// Meshes the complex. If features thinner than the feature size make its refinement far finer than the
-/// sizes ask for, first tries constrained tetrahedra, then to overlay these features. Sets the repair that is
-/// used.
+/// sizes ask for, tries constrained tetrahedra, then tries to overlay these features, and if both fail,
+/// allows the fine refinement. Sets the repair that is used.
 std::pair<Tries::End, std::string> Tries::attempt_simplest(RepairOptions& repair, SoupPipelineResult& all,
                                                            std::exception_ptr& error) {
   if (!may_overlay()) return attempt(all.plc, error);
@@ -372,9 +373,9 @@ bool Tries::take_constrained(const Plc& plc) {
   });
 }
 
-/// If angles still miss their bounds, tries the opposite treatment of narrow places. If cells there were left
-/// unbounded, they may keep large angles, so now their ratio is bounded unless that takes many times the
-/// vertices. If they were bounded, they are left unbounded.
+/// If angles still miss their bounds, tries the opposite treatment of narrow places. If the radius-edge
+/// ratios of cells there were not bounded, cells may have large angles; so now bounds these ratios, unless
+/// that takes many times the vertices. If the ratios were bounded, leaves them unbounded.
 void Tries::try_narrow_places_otherwise(const Plc& plc) {
   constexpr std::size_t times = 10, more = 100'000;
   if (!job_.given.coarsen || !missed(guarantee::thin_angles)) return;
@@ -401,8 +402,8 @@ void Tries::try_narrow_places_otherwise(const Plc& plc) {
   maker_.set_narrow_cells(NarrowCells::bounded_if_cheap);
 }
 
-/// Returns the factor on the surface distance of first order with which regions should keep their volumes,
-/// and thin places their thickness. The loss is about proportional to the distance.
+/// Returns the factor of the surface distance of first order with which regions should keep their volumes,
+/// and thin places their thickness. The loss of volume is about proportional to the distance.
 double Tries::share_for_volumes() const {
   constexpr double aim = 0.7, least = 0.25;
   const PipelineOptions& given = job_.given;
@@ -423,8 +424,9 @@ double Tries::share_for_volumes() const {
   return share;
 }
 
-/// Returns the largest relative deviation of a region's volume. Lowers the shares of the patches around each
-/// region whose volume calls for a warning, so that it may come within the limit.
+/// Returns the largest relative deviation of a region's volume from the input's. If `shares` is given (shares
+/// of the tolerance, by patch), lowers those of the patches around each region whose volume calls for a
+/// warning, so that this volume may come within the limit.
 double Tries::largest_loss(const Plc& plc, std::vector<double>* shares) const {
   constexpr double aim = 0.7, least = 0.25;
   const ShapeMeasures &input = job_.made.check.of_input, &mesh = job_.made.check.of_mesh;
@@ -453,10 +455,10 @@ bool Tries::may_keep_volumes() const {
          job_.made.result.mesh.tets.size() <= most_tets;
 }
 
-/// Makes the mesh again, nearer to the surfaces of regions whose volumes call for a warning. The volumes that
-/// chords take from one side of a wall and add on the other cancel only in part; no estimate from the complex
-/// predicts by how much. Keeps the mesh with the better volumes. Each attempt gets half of the remaining
-/// time, so that a time limit cannot lose the mesh at hand.
+/// Makes the mesh again, nearer to the surfaces of regions whose volumes call for a warning. This cannot be
+/// done at first: the volumes that chords take from one side of a wall and add on the other cancel only in
+/// part, and no estimate from the complex predicts how far they do. Keeps the mesh with the better volumes.
+/// Each attempt gets half of the remaining time, so that a time limit cannot lose the mesh at hand.
 void Tries::keep_volumes(const Plc& plc) {
   constexpr unsigned rounds = 2;
   constexpr double share_of_time = 0.5;
@@ -482,8 +484,8 @@ bool Tries::come_nearer(const Plc& plc, const std::vector<double>& shares, doubl
   });
 }
 
-/// If nothing but volumes and thicknesses misses its limit, makes the mesh again, nearer to the smooth
-/// patches concerned, in at most half of the remaining time. Returns whether every guarantee holds then.
+/// If only volumes and thicknesses miss their limits, makes the mesh again, nearer to the smooth patches
+/// concerned, in at most half of the remaining time. Returns whether every guarantee holds then.
 bool Tries::come_nearer_where_missed(const Plc& plc) {
   constexpr double least = 0.25, share_of_time = 0.5;
   const CheckReport& check = job_.made.check;
@@ -503,9 +505,10 @@ bool Tries::come_nearer_where_missed(const Plc& plc) {
   return holds;
 }
 
-/// Makes the mesh again with these shares of the tolerance and at most a few times the vertices or, if it
-/// began with constrained tetrahedra, the tets. Keeps it if it keeps every guarantee and `is_good_enough`.
-/// Returns whether it is kept. `why`: the reason that a note gives.
+/// Makes the mesh again with these shares of the tolerance, by patch, and at most a few times its number of
+/// vertices or, if it began with constrained tetrahedra, of tets. Uses the new mesh if it keeps every
+/// guarantee and `is_good_enough` returns true. Returns whether it is used. `why`: the reason that a note
+/// gives.
 bool Tries::make_nearer(const Plc& plc, const std::vector<double>& shares, const std::string& why,
                         const std::function<bool()>& is_good_enough) {
   constexpr std::size_t times_vertices = 3, times_tets = 3;

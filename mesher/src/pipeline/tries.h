@@ -62,8 +62,8 @@ class Tries {
   bool make_nearer(const Plc& plc, const std::vector<double>& shares, const std::string& why,
                    const std::function<bool()>& is_good_enough);
 
-  /// Tries another way to make a mesh. The present result stays unless it has no mesh or the new one keeps
-  /// every guarantee.
+  /// Tries another way to make a mesh. Uses the new mesh and returns true if it keeps every guarantee, or if
+  /// there was none before (`has_mesh`). Otherwise restores the former result.
   template <class Way>
   bool find_better(bool has_mesh, const Way& way);
 

@@ -23,8 +23,8 @@ double area_of(const Plc& plc, Index triangle) {
   return 0.5 * norm(cross(plc.points[b] - plc.points[a], plc.points[c] - plc.points[a]));
 }
 
-/// Returns how many squares have the patch's area. The side of a square is the size or, if that is shorter,
-/// the longest chord that keeps the tolerance.
+/// Returns how many squares together have the patch's area. The side of a square is the size or, if that is
+/// shorter, the longest chord that keeps the tolerance.
 double squares_on(const Plc& plc, const Plc::Patch& patch, double size, const SurfaceTolerance& tolerance) {
   const std::vector<Curvature> curvature =
       patch.planar ? std::vector<Curvature>(patch.triangle_count) : curvatures(plc, patch);
@@ -42,9 +42,9 @@ double squares_on(const Plc& plc, const Plc::Patch& patch, double size, const Su
   return squares;
 }
 
-/// Returns how many squares have the area of the patch's curved triangles. The side of a square is the
-/// longest chord that keeps the tolerance or, if that is shorter, the size. Where the radius of curvature is
-/// below the tolerance, as in folds, the tolerance is taken as the radius.
+/// Returns how many squares together have the area of the patch's curved triangles. The side of a square is
+/// the longest chord that keeps the tolerance or, if that is shorter, the size. Where the radius of curvature
+/// is below the tolerance, as in folds, the tolerance is taken as the radius.
 double squares_of_chords(const Plc& plc, const Plc::Patch& patch, double size,
                          const SurfaceTolerance& tolerance) {
   if (patch.planar) return 0;
@@ -91,8 +91,8 @@ double expected_by_features(const Plc& plc, const MeshOptions& options) {
   return vertices;
 }
 
-// Returns the factor by which tighter bounds than the defaults increase the number of vertices. Near smooth
-// surfaces this number is inversely proportional to the distance.
+// Returns the factor by which bounds tighter than the defaults increase the number of vertices. Near smooth
+// surfaces this number is inversely proportional to the surface distance.
 double by_bounds(const Plc& plc, const MeshOptions& options) {
   constexpr double power = 4, by_vertex_ratio = 4;
   const double distance =
@@ -122,8 +122,8 @@ std::size_t most_vertices_expected(const Plc& plc, const PipelineOptions& option
 }
 
 std::size_t most_vertices_on_rods(const Plc& plc, const MeshOptions& options) {
-  // `by_chord`: vertices for each square whose sides are the longest chords. Rods far thinner than the size
-  // need fewer. `most`: the largest limit.
+  // `by_chord`: vertices for each square whose sides are the longest chords that keep the tolerance; rods far
+  // thinner than the size need fewer. `most`: the largest number returned.
   constexpr double by_chord = 8, most = 1e6;
   const SurfaceTolerance tolerance = tolerance_of(plc, options.bounds, options.size);
   const double size = smallest_size(options, plc.bounds.diagonal());

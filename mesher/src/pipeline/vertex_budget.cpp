@@ -24,10 +24,10 @@ void VertexBudget::compare_with(std::size_t constrained_vertices) {
   is_known_ = false;
 }
 
-// Finds the budget of vertices for a complex. A budget that the options give counts unless the computed one
-// is smaller. Without further repairs and starts the given one always counts.
+// Uses a limit that the options give unless the computed one is smaller; without further repairs and starts,
+// always uses the given one.
 void VertexBudget::find(const Plc& plc, const PipelineOptions& options) {
-  // Bodies far thinner than the size really need many vertices.
+  // The least bounds are high because bodies far thinner than the size really need many vertices.
   constexpr std::size_t times_without_other_ways = 2, least_without_other_ways = 300'000,
                         least_before_constrained = 100'000, times_constrained = 50;
   constexpr std::size_t by_tightening = 4;  // real parts need no more (vertex_bound.cpp)

@@ -8,8 +8,8 @@
 
 namespace collarmesh::pipeline {
 
-/// The other ways to make a mesh if a refinement explodes: further repairs and starts, only constrained
-/// tetrahedra of any quality, or none.
+/// The ways that are left to make a mesh if a refinement explodes, that is, takes far too many vertices:
+/// further repairs and starts, only constrained tetrahedra of any quality, or none.
 enum class Ways { others, constrained, none };
 
 /// The number of vertices at which a refinement is stopped because it takes far more than its sizes ask for.
@@ -22,17 +22,17 @@ class VertexBudget {
   /// a mesh. The bound is computed when it is needed. Undoes `tighten` and `compare_with`.
   void bound(Ways ways);
 
-  /// Lowers the bound for further refinements while there are other ways, because one has exploded.
+  /// Lowers the bound for further refinements, because one has exploded. Has no effect without Ways::others.
   void tighten();
 
-  /// Bounds further refinements to many times the vertices of a mesh that was made from constrained
-  /// tetrahedra (0: there is none). To coarsen a finer mesh would take long and leave poor tets.
+  /// Also bounds further refinements to many times the vertices of a mesh that was made from constrained
+  /// tetrahedra (0: there is none). Coarsening a finer mesh would take long and leave poor tets.
   void compare_with(std::size_t constrained_vertices);
 
-  /// Computes the number for a complex with these options, unless it is known.
+  /// Computes the bound for a complex with these options, unless it is known already.
   void find(const Plc& plc, const PipelineOptions& options);
 
-  /// Returns this number of vertices; 0: there is no limit, or only the one that the options give.
+  /// Returns the bound on the number of vertices; 0: there is none, except one that the options may give.
   std::size_t most() const { return most_; }
   void set_most(std::size_t vertices) { most_ = vertices; }
 

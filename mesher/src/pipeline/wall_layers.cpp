@@ -61,8 +61,8 @@ std::map<Index, double> volume_allowances(const MeshJob& job, const Areas& areas
   return allowed;
 }
 
-/// Lists mid-edge nodes of walls again if they were straightened before there were layers. Gives them their
-/// present numbers.
+/// Adds to the list of straightened mid-edge nodes in `made` the nodes of walls that were straightened before
+/// there were layers, as listed in `given`. They get their present numbers.
 void keep_straightened(const checks::WallGeometry& before, const checks::WallGeometry& now,
                        const SecondOrderReport& given, SecondOrderReport& made) {
   if (before.mid_nodes.size() != now.mid_nodes.size()) return;  // the walls differ, which the check reports
