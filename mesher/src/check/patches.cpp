@@ -117,8 +117,8 @@ class PatchCheck {
     return false;
   }
 
-  // Compares areas projected along the plane's normal, with signs. (A turned face has a finding of its own,
-  // so its area counts as positive here.)
+  // Compares `found`, the sum of signed areas projected along the plane's normal, with the complex. (A turned
+  // face has a finding of its own, so its area counts as positive here.)
   void compare_area(double found) {
     const auto [expected, allowed] = planar_area(to_check_, id_);
     check_measure(area_of_patch, {"patch", id_, patch_.tag}, to_check_.plc_corner(triangle(0), 0), found,
