@@ -74,7 +74,7 @@ TEST_P(CadGaps, OfFacesAreSewn) {
   const double gap = GetParam() * std::sqrt(1400.);
   CadModel faces(compound(loose_faces(gap)), "part");
   expect_closed_box(faces);
-  expect_mentions(faces.notes().at(0), {"part", "sewn within", "1 solid"});
+  expect_mentions(faces.notes().at(0), {"part", "sewn into 1 solid"});
   std::set<Tag> tags;
   const auto soups = faces.tessellate({});
   for (Index f = 0; f < soups[0].facet_count(); ++f) tags.insert(soups[0].facet_tag(f));
@@ -85,7 +85,7 @@ TEST_P(CadGaps, OfSolidsAreSewn) {
   const double gap = GetParam() * std::sqrt(1400.);
   CadModel solid(solid_of(shell_of(loose_faces(gap))), "part");
   expect_closed_box(solid);
-  expect_mentions(solid.notes().at(0), {"Solid1 was open", "sewn within"});
+  expect_mentions(solid.notes().at(0), {"Solid1 was open", "sewn with a tolerance of"});
 }
 
 INSTANTIATE_TEST_SUITE_P(Relative, CadGaps, ::testing::Values(0., 3e-6, 3e-5, 1e-4, 3e-4));

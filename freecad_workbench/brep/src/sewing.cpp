@@ -137,7 +137,7 @@ TopoDS_Shape closed(const Topology::Solid& open, const std::string& file, Topolo
     return open.shape;
   }
   sewings.push_back(result);
-  topology.notes.push_back(fmt::format("{}: {} was open; its faces were sewn within {:.3g}", file,
+  topology.notes.push_back(fmt::format("{}: {} was open; its faces were sewn with a tolerance of {:.3g}", file,
                                        topology.name(open.shape), result.gap));
   return solid;
 }
@@ -180,8 +180,8 @@ void sew_faces(const std::string& file, Topology& topology) {
   std::vector<TopoDS_Shape> kept;
   for (const Topology::Solid& solid : topology.solids) kept.push_back(solid.shape);
   topology.all = compound_of(kept);
-  topology.notes.push_back(fmt::format("{}: its faces were sewn within {:.3g} into {} solid{}", file,
-                                       result.gap, closed, closed == 1 ? "" : "s"));
+  topology.notes.push_back(fmt::format("{}: its faces were sewn into {} solid{}, with a tolerance of {:.3g}",
+                                       file, closed, closed == 1 ? "" : "s", result.gap));
   if (left_out > 0)
     topology.notes.push_back(
         fmt::format("{}: {} of its faces enclose nothing and are left out", file, left_out));

@@ -11,7 +11,6 @@ namespace collarmesh::checks {
 
 namespace {
 
-/// A side of a face.
 struct Side {
   std::array<Index, 2> ends;  // sorted
   Tag tag;
@@ -31,7 +30,7 @@ std::vector<Side> sides_of(const TetMesh& mesh) {
   return sides;
 }
 
-/// Bent curves that bound patches with the same tags. Finds the nearest of them.
+/// Bent curves whose patches have the same tags. Finds the curve nearest to a point.
 class CurvesOfTags {
  public:
   void add(const Plc& plc, Index curve) {

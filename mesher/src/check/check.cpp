@@ -153,8 +153,7 @@ void check_core(const TetMesh& mesh, const MeshToCheck& to_check, CheckReport& r
   check_core_angles(labelled, walls_below(mesh), to_check.plc, bounds, report);
 }
 
-/// Judges a mesh of tets. `with_layers`: null, or the mesh with layers that were cut into tets to make this
-/// one.
+/// Judges a mesh of tets. `with_layers`: null, or the mesh whose layers were cut into tets to make `mesh`.
 void check_tet_mesh(const TetMesh& mesh, const TetMesh* with_layers, const Plc& plc,
                     const CheckOptions& options, const Execution& execution, CheckReport& report,
                     Findings& findings) {

@@ -35,9 +35,9 @@ class CreaseCorners {
     std::sort(edges_.begin(), edges_.end());
   }
 
-  /// Returns 1 for a star, 2 for a book, 0 for neither, in a mesh that was not coarsened. There each vertex
-  /// on a crease is the centre of a ball. A star has one corner on a crease, the centre of its ball; a book
-  /// has two, the centres of two balls, joined by an edge on the crease.
+  /// Returns the kind of a tet in a mesh that was not coarsened: 1 in a star, 2 in a book, else 0. In such a
+  /// mesh each vertex on a crease is the centre of a ball. A tet in a star has one corner on a crease, the
+  /// centre of its ball; a tet in a book has two, the centres of two balls, joined by an edge on the crease.
   std::uint8_t kind_in_balls(const std::array<Index, 4>& tet) const {
     std::array<Index, 4> corners;
     const auto end =
@@ -46,8 +46,8 @@ class CreaseCorners {
     if (end - corners.begin() != 2) return 0;
     return is_edge(corners[0], corners[1]) ? 2 : 0;
   }
-  /// Returns the same for a coarsened mesh, where all cells that touch a crease belong to its collar: 2 if
-  /// two corners are joined by an edge on the crease, else 1.
+  /// Returns the kind of a tet in a coarsened mesh, where all tets that touch a crease belong to its collar:
+  /// 2 if two corners are joined by an edge on a crease, else 1; 0 if the tet touches no crease.
   std::uint8_t kind_of_touching(const std::array<Index, 4>& tet) const {
     if (std::none_of(tet.begin(), tet.end(), [&](Index p) { return on_crease_[p]; })) return 0;
     for (unsigned i = 0; i < 4; ++i)

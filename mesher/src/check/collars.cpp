@@ -154,8 +154,8 @@ class CollarCheck {
         At{centre(a)}, radius(a), At{centre(b)}, radius(b));
   }
 
-  // Checks the circles in which consecutive balls meet. The centres of consecutive balls are joined by an
-  // edge on their crease.
+  // Checks that consecutive balls, whose centres are joined by an edge on their crease, meet in a circle that
+  // no third ball reaches.
   void check_circles() {
     for (const auto& [p, q] : to_check_.mesh.edges) {
       const Index a = ball_at_[p], b = ball_at_[q];
@@ -188,8 +188,8 @@ class CollarCheck {
         At{centre(a)}, radius(a), At{centre(b)}, radius(b), what);
   }
 
-  // Checks that the corners of a star include the centre of its ball, and those of a book the centres of two
-  // consecutive balls.
+  // Checks that each tet has as many centres of balls among its corners as its mark demands: a tet in a star
+  // one, a tet in a book two, other tets none.
   void check_cells() {
     const TetMesh& mesh = to_check_.mesh;
     for (Index t = 0; t < mesh.tets.size(); ++t) {

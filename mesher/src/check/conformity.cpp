@@ -98,8 +98,8 @@ class ConformityCheck {
           sides_[1].cell, region(sides_[1]));
   }
 
-  // Checks the regions of a listed face. The normal of a tet's side points out of the tet, so the side of
-  // the tet behind the face has the face's orientation.
+  // Checks the regions of a listed face. Normals of tets' sides point out of the tets, so the tet behind the
+  // face is the one whose side is oriented like the face.
   void check_regions(const TriangleUse& listed) {
     std::array<Index, 2> regions{0, 0};
     for (const TriangleUse& side : sides_) regions[side.odd == listed.odd ? 0 : 1] = region(side);

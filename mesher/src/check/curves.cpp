@@ -113,8 +113,8 @@ class CurveCheck {
     return good;
   }
 
-  // Returns the curve as a polyline that starts at the first point of the chain. Turns the chain into the
-  // curve's direction.
+  // Returns the curve as a polyline that starts at the first point of the chain. Reverses the chain if it
+  // runs against the curve.
   Polyline make_polyline() {
     std::vector<Point> points;
     for (const Index i : curve_.points) points.push_back(to_check_.plc.points[i]);
@@ -132,7 +132,7 @@ class CurveCheck {
     for (std::size_t i = 1; i < chain_.size(); ++i) {
       const Point &a = to_check_.point(chain_[i - 1]), &b = to_check_.point(chain_[i]);
       const bool last = i + 1 == chain_.size();
-      // The next point is searched on this part only: an arc that stays close to its chord is not much longer
+      // Search the nearest point only up to here: an arc that stays close to its chord is not much longer
       // than the chord.
       const double reach = std::fmin(polyline.length(), arc + 3 * distance(a, b) + 4 * allowed_);
       const Polyline::Nearest here =

@@ -13,7 +13,7 @@ namespace collarmesh::checks {
 
 namespace {
 
-/// Replaces values of the complex by exact ones where those are known.
+/// Replaces values, measured in the complex, by exact values where these are known (finite).
 void take_exact(const std::vector<double>& exact, std::vector<double>& values) {
   for (std::size_t i = 0; i < std::min(exact.size(), values.size()); ++i)
     if (std::isfinite(exact[i])) values[i] = exact[i];

@@ -21,12 +21,12 @@ ShapeMeasures feature_sizes(const MeshToCheck& to_check);
 struct AllowedArea {
   double area, allowed;
 };
-/// Returns the area of the projection of a patch onto its plane. It depends on the border alone: it is half
-/// the sum of dot(normal, cross(a, b)) over all edges ab, and the two sides of each inner edge cancel. So
-/// triangles may be tilted if the patch is planar only up to a tolerance, and folded if they are narrower
-/// than the tolerance. (The sum of unprojected areas would not do: a tilt by an angle t increases an area by
-/// about t^2 / 2, and needles may be tilted by any angle.) Areas may therefore differ by the length of the
-/// border times the distance that it may move, and by rounding.
+/// Returns the area of the projection of a patch onto its plane, and the allowed difference. The area depends
+/// on the border alone: it is half the sum of dot(normal, cross(a, b)) over all edges ab, and the two sides
+/// of each inner edge cancel. So triangles may be tilted if the patch is planar only up to a tolerance, and
+/// folded if they are narrower than the tolerance. (The sum of unprojected areas would not do: a tilt by an
+/// angle t increases an area by about t^2 / 2, and needles may be tilted by any angle.) Areas may therefore
+/// differ by the length of the border times the distance that it may move, and by rounding.
 AllowedArea planar_area(const MeshToCheck& to_check, Index patch);
 
 /// Returns the sizes of the features of the exact geometry where known, else of the complex.

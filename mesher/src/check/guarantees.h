@@ -9,26 +9,26 @@
 /// 1. Give it a name here, or in the header of its part: layer_cells.h, layer_walls.h, periodic.h. If a mesh
 ///    that misses it may still get labels (labelled.h), list it in `of_shapes`.
 /// 2. If it concerns single tets or nodes, write a predicate into predicates.h and call it from tets.cpp or
-///    second_order.cpp. Otherwise declare a check in mesh_to_check.h and call it from `judge` in check.cpp,
-///    for meshes of triangles alone from `judge_shells` in shells.cpp, of curve edges alone from
+///    second_order.cpp. Otherwise declare a check in mesh_to_check.h and call it from `judge` in check.cpp;
+///    for meshes of triangles alone, from `judge_shells` in shells.cpp; for meshes of curve edges alone, from
 ///    `judge_lines` in lines.cpp.
 /// 3. Under MPI none of this runs by itself: call the predicate from `Certification` in
 ///    distributed/src/certify.cpp, for tets in `check_tets`, for nodes in `check_points`. `gather` collects
 ///    the findings of all ranks. A measure of the whole mesh is summed in `sum_up` and judged in
-///    `compare_with_complex`. Guarantees that only many ranks need, as "shared_places", have their names
-///    there.
-/// 4. Break it on purpose in tests/fast/check_wrong_meshes_test.cpp. If no solver can use a mesh that misses
-///    it, list it in command/usable.cpp.
+///    `compare_with_complex`. Guarantees that only a mesh on several ranks needs, such as "shared_places",
+///    have their names in certify.cpp.
+/// 4. Break the guarantee on purpose in tests/fast/check_wrong_meshes_test.cpp. If no solver can use a mesh
+///    that misses it, list it in command/usable.cpp.
 /// 5. Add the name to `guarantees` in report/html_report/facts.js and to
-///    freecad_workbench/freecad/collarmesh_workbench/guarantees.py; without it the reports show the guarantee
-///    only when it is missed.
+///    freecad_workbench/freecad/collarmesh_workbench/guarantees.py; else the reports show the guarantee only
+///    when it is missed.
 namespace collarmesh::guarantee {
 
 // Guarantees of arrays and labels.
 inline constexpr char valid_arrays[] = "valid_arrays";            ///< equal lengths, indices in range
 inline constexpr char finite_points[] = "finite_points";          ///< no NaN, no infinity
 inline constexpr char distinct_points[] = "distinct_points";      ///< no two points are at one place
-inline constexpr char referenced_points[] = "referenced_points";  ///< every point is a corner of a tet
+inline constexpr char referenced_points[] = "referenced_points";  ///< every point is a node of an element
 inline constexpr char region_tag[] = "region_tag";                ///< a tet's tag is its region's
 inline constexpr char vertex_feature[] = "vertex_feature";  ///< a vertex lies on the feature that the mesh
                                                             ///< gives for it
@@ -40,7 +40,7 @@ inline constexpr char conforming[] = "conforming";    ///< a face has at most tw
 inline constexpr char radius_edge[] = "radius_edge";  ///< bound for tets that are neither thin nor in collars
 inline constexpr char thin_angles[] = "thin_angles";  ///< angle bounds of tets beyond the radius-edge bound
 inline constexpr char collar_dihedral[] = "collar_dihedral";  ///< dihedral angles in collars
-/// Each tet that needs an interior node has a corner on no face.
+/// If the bounds ask for interior nodes, each tet has a corner on no listed face.
 inline constexpr char interior_node[] = "interior_node";
 
 // Guarantees of the balls of the collars, if the mesh has them.
@@ -49,8 +49,8 @@ inline constexpr char collar_gap[] = "collar_gap";        ///< radius at most a 
 inline constexpr char collar_disjoint[] =
     "collar_disjoint";  ///< balls of different creases are apart; consecutive balls meet in a circle that no
                         ///< third ball reaches
-inline constexpr char collar_cells[] = "collar_cells";  ///< stars have the centre of their ball as a corner,
-                                                        ///< books those of two balls
+inline constexpr char collar_cells[] = "collar_cells";  ///< tets in stars have the centre of one ball as a
+                                                        ///< corner, tets in books the centres of two
 
 // Guarantees of the regions.
 inline constexpr char listed_faces[] =

@@ -1,4 +1,4 @@
-// Finds tets without a corner inside a region, from the mesh alone.
+// Finds tets all of whose corners are on listed faces, from the mesh alone.
 #include <algorithm>
 #include <vector>
 

@@ -4,9 +4,9 @@
 
 namespace collarmesh::checks {
 
-/// Returns a mesh of tets whose points, faces and edges have the labels of the features of a complex that
-/// they lie on, found by position. Throws PlcError, with the first finding, if the mesh does not cover the
-/// complex. Cell shapes, and distances from the complex, may miss their bounds.
+/// Returns a copy of a mesh of tets in which points, faces and edges have the labels of the complex's
+/// features that they lie on. Finds missing labels by position. Throws PlcError, with the first finding, if
+/// the mesh misses a guarantee that is not in guarantee::of_shapes.
 TetMesh labelled(const TetMesh& mesh, const Plc& plc, const CheckOptions& options,
                  const Execution& execution);
 

@@ -1,4 +1,4 @@
-// The certificate of prisms, pyramids and tets in boundary layers, by the cells alone.
+// The certificate of meshes with boundary layers: their prisms, pyramids and tets.
 #include "check/layer_cells.h"
 
 #include <algorithm>
@@ -32,14 +32,14 @@ constexpr std::string_view name_of(Kind kind) {
   return names[static_cast<unsigned>(kind)];
 }
 
-/// A side of a cell, or a listed face or quadrangle. The corners begin with the smallest and go on with the
-/// smaller of its neighbours; the fourth is `none` for a triangle.
+/// A side of a cell, or a listed face or quadrangle. The corners begin with the smallest one, then comes the
+/// smaller of the two next to it; the fourth is `none` for a triangle.
 struct CellSide {
   std::array<Index, 4> corners;
   Index cell;
   Kind kind;
-  bool turned;  // the normal of the corners in this order points into the cell; for a listed face or
-                // quadrangle: into regions[0]
+  bool turned;  // the normal, with the corners in this order, points into the cell; for a listed face or
+                // quadrangle: into its regions[0]
 
   bool listed() const { return kind == Kind::face || kind == Kind::quad; }
 };
@@ -232,7 +232,7 @@ class LayerCheck {
     sides.push_back(side_of(std::array{a, d, c, b}, pyramid, Kind::pyramid));
   }
 
-  /// Checks the cells and listed faces that have one side in common, cells first.
+  /// Checks the cells and listed faces at one side, [first, last); cells come first.
   void check_side(const CellSide* first, const CellSide* last) {
     const CellSide* const cells_end = std::find_if(first, last, [](const CellSide& s) { return s.listed(); });
     const auto cells = cells_end - first, lists = last - cells_end;
@@ -404,8 +404,8 @@ class CoreAngles {
   std::vector<std::array<Index, 3>> faces_;
   std::vector<Index> patches_;
   std::optional<ForcedEdges> forced_;
-  std::vector<double> at_point_;  // by point: least angle, lower at sharp creases; empty without such
-                                  // creases
+  std::vector<double> at_point_;  // by point: lower bound on angles, smaller at sharp creases; empty if no
+                                  // crease is sharp
 };
 
 }  // namespace

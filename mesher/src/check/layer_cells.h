@@ -10,7 +10,8 @@
 namespace collarmesh::guarantee {
 
 inline constexpr char layer_arrays[] = "layer_arrays";  ///< equal lengths, indices in range
-/// Positive in all points of linear cells; at corners and integration points in those of second order.
+/// Positive everywhere in tets and linear cells; at corners and integration points of other prisms and
+/// pyramids.
 inline constexpr char layer_jacobian[] = "layer_jacobian";
 inline constexpr char layer_conforming[] = "layer_conforming";  ///< cells meet in whole sides
 inline constexpr char layer_sides[] = "layer_sides";  ///< boundaries and interfaces are listed, once each
@@ -26,17 +27,18 @@ namespace collarmesh::checks {
 /// The least dihedral angle of tets outside layers, in degrees, if the bounds give none.
 inline constexpr double least_core_angle = 8;
 
-/// Checks the cells of boundary layers together with the tets, by the mesh alone: arrays; positive Jacobians;
-/// each side of a cell either is a side of one other cell, which lies on its other side, or is listed among
-/// the faces or quadrangles; sides between regions are listed, too; nodes of second order. Adds findings. A
-/// mesh without layers may be given, too. Cost: O(n log n).
+/// Checks the cells of boundary layers together with the tets, by the mesh alone: lengths of arrays; positive
+/// Jacobians; each side of a cell either is a side of one other cell, which lies on its other side, or is
+/// listed among the faces or quadrangles; sides between regions are listed, too; the cells at an edge share
+/// its mid-edge node. Adds findings. A mesh without layers may be given, too. Cost: O(n log n).
 void check_layer_cells(const TetMesh& mesh, CheckReport& report, std::size_t findings_per_guarantee = 20);
 
-/// Returns the volumes of regions, by index, of straight tets, prisms and pyramids.
+/// Returns the volume of each region, by index: of its tets, prisms and pyramids, as if their edges were
+/// straight.
 std::map<Index, double> volumes_with_layers(const TetMesh& mesh);
 
-/// Checks that regions keep these volumes. `allowed`: by region, the absolute difference allowed beyond
-/// rounding; 0 for regions that it does not list. Adds findings.
+/// Checks that the regions of `mesh` have the volumes `before`. `allowed`: by region, the absolute difference
+/// allowed beyond rounding; 0 for regions that it does not list. Adds findings.
 void check_layer_volumes(const std::map<Index, double>& before, const TetMesh& mesh,
                          const std::map<Index, double>& allowed, CheckReport& report);
 

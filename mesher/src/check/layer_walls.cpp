@@ -40,7 +40,7 @@ constexpr unsigned weight_of_prism = 3, weight_of_pyramid = 2;
 
 /// A cell of a layer. Its weight is the number of tets into which it can be divided.
 struct LayerCell {
-  std::array<Index, 3> below{};  // nodes of the wall, sorted
+  std::array<Index, 3> below{};  // the wall's nodes below the cell, sorted
   Index region = none, layer = 0;
   unsigned weight = 0;
   Index cell = none;
@@ -214,8 +214,8 @@ class WallCheck {
   }
   double area(Index face) const { return 0.5 * norm(normal(face)); }
 
-  /// Checks the cells in one region above one triangle: above one of its sides or, if it lies inside the
-  /// region, above both.
+  /// Checks the cells in one region above one triangle: above one side of the triangle or, if the triangle
+  /// lies inside the region, above both.
   void check_stack(std::span<const WallSide> sides, std::span<const LayerCell> cells) {
     std::vector<unsigned> weights(sides[0].count + std::size_t{1}, 0);  // by layer
     std::array<unsigned, 2> first{};                                    // weights in the first layer, by side

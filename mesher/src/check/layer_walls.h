@@ -14,18 +14,18 @@
 namespace collarmesh::guarantee {
 
 /// Walls keep their triangles and edges; cells of layers lie on walls, in as many layers as asked for; the
-/// reported coverage is that of the cells.
+/// reported areas are those that the cells cover.
 inline constexpr char layer_walls[] = "layer_walls";
 
 }  // namespace collarmesh::guarantee
 
 namespace collarmesh::checks {
 
-/// The numbers of layers that are asked for, by patch and by the region that the layers are in.
+/// How many layers are asked for, by patch and by the region in which the layers lie.
 using AskedWalls = std::map<std::pair<Index, Index>, unsigned>;
 
-/// The triangles of walls, and the curve edges that are sides of these triangles, by the places of their
-/// corners.
+/// The triangles of walls, and the curve edges that are sides of these triangles, identified by the positions
+/// of their corners.
 struct WallGeometry {
   struct Triangle {
     std::array<Point, 3> corners;  ///< the lexicographically lowest one first
@@ -49,11 +49,12 @@ struct WallGeometry {
   std::vector<MidNode> mid_nodes;   ///< sorted by their ends, with duplicates; empty in first order
 };
 
-/// Checks layers against the walls that were asked for and against the mesh before them: the triangles and
-/// edges of walls are the same, and so are their mid-edge nodes, except those listed as straightened; each
-/// cell of a layer lies above one triangle of a wall; above each triangle there are prisms in all layers (or
-/// the tets into which they are cut), or pyramids and tets, so that it is not covered, or no cells; area and
-/// covered area of each patch are those that `layers` reports. Adds findings. Cost: O(n log n).
+/// Checks layers against the walls that were asked for and against the mesh before layers were made: the
+/// triangles and edges of walls are the same, and so are their mid-edge nodes, except those listed as
+/// straightened; each cell of a layer lies above one triangle of a wall; above a triangle, all layers have
+/// the same cells: either a prism, perhaps cut into tets and pyramids, which covers the triangle; or only
+/// some of these tets and pyramids, which do not cover it; or none; area and covered area of each patch are
+/// those that `layers` reports. Adds findings. Cost: O(n log n).
 void check_layer_walls(const AskedWalls& walls, const WallGeometry& before, const TetMesh& mesh,
                        const LayersReport& layers, CheckReport& report,
                        std::span<const SecondOrderReport::Straightened> straightened = {});

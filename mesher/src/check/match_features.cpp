@@ -131,8 +131,8 @@ DisjointSets edge_pieces(const TetMesh& mesh, const std::vector<Index>& vertex_p
   return pieces;
 }
 
-// Joins faces between the same regions (and of one tag, if `by_tag`) that share an edge on no curve, which is
-// a side of no further face.
+// Joins faces that have the same pair of regions (and, if `by_tag`, the same tag) and share an edge that lies
+// on no curve and is a side of no third face.
 DisjointSets face_pieces(const TetMesh& mesh, bool by_tag) {
   struct FaceEdge {
     std::array<Index, 2> ends;

@@ -36,15 +36,16 @@ struct MeshToCheck {
   SurfaceTolerance tolerance;
   double rounding = 0;  ///< distance by which rounding may move a point off a straight line or a plane,
                         ///< absolute
-  /// Allowed distance of the mesh from each curve and patch, absolute; for smooth patches the largest one
-  /// (`tolerance` depends on the place).
+  /// Allowed distance of the mesh from each curve and patch, absolute. For bent curves and smooth patches,
+  /// the largest one on them, because `tolerance` depends on the place.
   std::vector<double> curve_allowance, patch_allowance;
   std::shared_ptr<const RegionLocator> regions;
   FeatureMatch match;
-  std::vector<std::uint8_t> collar;  ///< by tet, as TetMesh::tet_collar, but by its corners on creases of the
-                                     ///< complex: see find_collar_cells
-  bool coarsened = false;            ///< if true, tets in collars must keep the bounds of other tets, too
-  /// The first tet that is part of a prism or pyramid; these cells are judged elsewhere, as a whole.
+  std::vector<std::uint8_t> collar;  ///< by tet: a value as in TetMesh::tet_collar, but found from the tet's
+                                     ///< corners on creases of the complex (find_collar_cells)
+  bool coarsened = false;            ///< if true, tets in collars must also keep the bounds of tets outside
+                                     ///< collars
+  /// Tets from this index on are parts of prisms and pyramids, which are judged elsewhere, as whole cells.
   Index first_part = none;
 
   /// Returns whether `match` is filled in.
@@ -97,16 +98,17 @@ class ThinCells {
   double smallest_;
   const std::vector<std::uint8_t>& marks_;
   bool all_;
-  std::vector<double> at_point_;        // smaller bounds at sharp creases; empty without such creases
+  std::vector<double> at_point_;        // by point: lower bound on angles, smaller at sharp creases; empty if
+                                        // no crease is sharp
   std::optional<ForcedEdges> forced_;   // none if no tet may be thin
   std::optional<NarrowPlaces> narrow_;  // none if thin tets may be anywhere
 };
 
-/// Returns for each point the feature of lowest dimension that contains it, by the mesh's faces and edges.
-/// Precondition: to_check.match is filled in.
+/// Returns for each point the feature of lowest dimension that contains it, found from the mesh's faces and
+/// edges. Precondition: to_check.match is filled in.
 std::vector<TetMesh::VertexFeature> features_of(const MeshToCheck& to_check);
 
-/// Items in groups by a key below `groups`; leaves out items whose key is none.
+/// Items grouped by their keys, which are below `groups`. Items whose key is none are left out.
 class Grouping {
  public:
   Grouping(const std::vector<Index>& keys, std::size_t groups) : first_(groups + 1, 0) {
@@ -133,31 +135,31 @@ inline double area(const Point& a, const Point& b, const Point& c) { return 0.5 
 /// mesh and the complex.
 MeshToCheck make_mesh_to_check(const TetMesh& mesh, const Plc& plc, const CheckOptions& options);
 
-/// Checks that arrays have equal lengths and corners are in range. If it returns false, no other check can
-/// run.
+/// Checks that arrays that belong together have equal lengths, and that the nodes of each element are in
+/// range and different. If it returns false, no other check can run.
 bool check_arrays(const TetMesh& mesh, Findings& findings);
 
-/// Checks that points are finite, distinct and used by tets. Returns false if one is not finite.
+/// Checks that points are finite, distinct and nodes of elements. Returns false if a point is not finite.
 bool check_points(const MeshToCheck& to_check, Findings& findings);
 
 /// Finds missing labels of a mesh from a file by position. If a tet's region and tag are not the complex's,
-/// finds the region of each connected part (bounded by listed faces and planar patches) from its largest tet.
-/// If most tags of faces or edges are missing or unknown to the complex, makes new faces and edges from the
-/// tets and the complex. The result has the complex's labels; a note says which were found. Returns nothing
-/// if no label is missing, or if tets lie outside all regions, which is a finding. Precondition: check_arrays
-/// and check_points hold. Cost: O(n log n).
+/// finds the region of each connected part (bounded by listed faces, planar patches and changes of region or
+/// tag) from its largest tet. If most tags of faces or edges are missing or unknown to the complex, makes new
+/// faces and edges from the tets and the complex. The result has the complex's labels; a note says which were
+/// found. Returns nothing if no label is missing. Adds a finding for each part outside all regions.
+/// Precondition: check_arrays and check_points hold. Cost: O(n log n).
 std::optional<TetMesh> place_by_position(const MeshToCheck& to_check, CheckReport& report,
                                          Findings& findings);
 
 /// Checks that the labels are indices of the complex. If it returns false, no other check can run.
 bool check_labels(const TetMesh& mesh, const Plc& plc, Findings& findings);
 
-/// Checks volumes, shapes and region volumes of all tets.
-/// Precondition: to_check.collar is filled in.
+/// Checks volumes, shapes and tags of all tets, and fills in report.region_volumes. Precondition:
+/// to_check.collar is filled in.
 void check_tets(const MeshToCheck& to_check, CheckReport& report, Findings& findings);
 
-/// Counts the tets whose corners are all corners of listed faces. They are findings if each tet needs a node
-/// inside a region.
+/// Counts the tets whose corners are all corners of listed faces. They are findings if the bounds ask for an
+/// interior node in each tet.
 void check_interior_nodes(const MeshToCheck& to_check, CheckReport& report, Findings& findings);
 
 /// Checks tets against each other and against the listed faces. Visits each edge once, so it also finds the
@@ -166,8 +168,8 @@ void check_conformity(const MeshToCheck& to_check, CheckReport& report, Findings
 
 void check_watertight(const MeshToCheck& to_check, Findings& findings);
 
-/// The volumes that the complex encloses, by region, and the differences that the mesh's surface allows: to
-/// first order, the allowed distance times the area.
+/// The volumes that the complex encloses, by region, and by how much the mesh's may differ from them: to
+/// first order, the allowed distance of the surface times its area.
 struct RegionVolumes {
   std::vector<double> enclosed, allowed;
 };
@@ -176,14 +178,14 @@ RegionVolumes expected_volumes(const MeshToCheck& to_check);
 /// Checks region volumes. Precondition: report.region_volumes is filled in.
 void check_region_volumes(const MeshToCheck& to_check, const CheckReport& report, Findings& findings);
 
-/// Compares volumes, areas and lengths of the mesh with those of the input. Volumes may differ by 5%, with
-/// curved elements by 1%, unless the bounds ask for a distance. Preconditions: to_check.match and
-/// report.region_volumes are filled in.
+/// Writes volumes, areas and lengths of the mesh and of the input to the report, and compares the volumes.
+/// They may differ by 5%, with curved elements by 1%, unless the bounds ask for a distance. Preconditions:
+/// to_check.match and report.region_volumes are filled in.
 void check_shape_kept(const MeshToCheck& to_check, CheckReport& report, Findings& findings);
 
 /// Compares the thickness of walls and the width of gaps at smooth patches with those of the complex, along
-/// rays. Averaged over a patch they may differ by half, unless the bounds ask for a distance. Precondition:
-/// to_check.match is filled in. Cost: near linear, at most 4000 rays per patch.
+/// rays. Averaged over a patch, they may differ by half of the complex's, unless the bounds ask for a
+/// distance. Precondition: to_check.match is filled in. Cost: near linear, at most 4000 rays per patch.
 void check_thickness_kept(const MeshToCheck& to_check, CheckReport& report, Findings& findings);
 
 /// Compute the allowed distances. For straight curves and planar patches: four times their own deviation from
@@ -192,7 +194,8 @@ void check_thickness_kept(const MeshToCheck& to_check, CheckReport& report, Find
 std::vector<double> curve_allowances(const MeshToCheck& to_check);
 std::vector<double> patch_allowances(const MeshToCheck& to_check);
 
-/// Finds the features by the indices in the mesh; if it has none, by tags and position.
+/// Finds the features of the mesh's entities: by the indices in the mesh; where an index is none, by tag and
+/// position.
 FeatureMatch match_features(const TetMesh& mesh, const Plc& plc, double rounding);
 
 /// Finds the vertices of the complex in the mesh, by index or position.
@@ -209,14 +212,14 @@ void check_listed_edges(const MeshToCheck& to_check, Findings& findings);
 void check_curves(const MeshToCheck& to_check, CheckReport& report, Findings& findings);
 void check_patches(const MeshToCheck& to_check, CheckReport& report, Findings& findings);
 
-/// Finds the cells of collars: stars have one corner on a crease of the complex; books have two, joined by an
-/// edge on it. If the mesh marks cells, only marked ones count; a mark elsewhere is a finding. If other tets
-/// at a crease are marked, or tets are thin, the mesh was coarsened: then all cells that touch a crease are
-/// its collar. Precondition: to_check.match is filled in.
+/// Finds the tets in collars: those in stars have one corner on a crease of the complex; those in books have
+/// two, joined by an edge on it. If the mesh marks tets, only marked ones count; a mark on another tet is a
+/// finding. A mesh that lists no balls was coarsened if it has thin tets, or if its marks fit only this: then
+/// all tets that touch a crease are its collar. Precondition: to_check.match is filled in.
 void find_collar_cells(MeshToCheck& to_check, Findings& findings);
 
 /// Checks the balls of the collars against the features of the mesh and against each other (paper,
-/// Definitions 6 and 7). Does nothing if the mesh does not have them.
+/// Definitions 6 and 7). Does nothing if the mesh lists no balls.
 void check_collars(const MeshToCheck& to_check, Findings& findings);
 
 /// Gives the faces and edges of a mesh of second order the mid-edge nodes of the tets there.
@@ -230,8 +233,8 @@ bool curve_is_outside(const MeshToCheck& to_check, Index curve);
 bool vertex_is_outside(const MeshToCheck& to_check, Index vertex);
 bool patch_is_outside(const MeshToCheck& to_check, Index patch);
 
-/// Warns of curves and vertices that are on no patch and lie outside all regions. (The builder of the complex
-/// warns of patches outside all regions.)
+/// Warns of curves on no patch and vertices on no patch or curve that lie outside all regions. (The builder
+/// of the complex warns of patches outside all regions.)
 void warn_of_features_outside(const MeshToCheck& to_check, CheckReport& report);
 
 }  // namespace collarmesh::checks

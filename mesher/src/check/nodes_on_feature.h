@@ -14,8 +14,8 @@ class NodesOnFeature {
   /// Keeps the mesh to check by reference.
   NodesOnFeature(const MeshToCheck& to_check, const TetMesh::VertexFeature& feature);
 
-  /// Adds a finding if a node is farther away than is allowed. If the feature is smooth, raises `largest` to
-  /// the distance.
+  /// Adds a finding if a node is farther from the feature than is allowed. For a bent curve or smooth patch,
+  /// raises `largest` to at least the node's distance.
   void check(std::string_view guarantee, const Named& node, const Point& at, double& largest,
              Findings& findings) const;
 

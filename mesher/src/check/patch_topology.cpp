@@ -76,8 +76,9 @@ class TopologyCheck {
     }
   }
 
-  // Checks the faces at an edge. If the edge lies on a curve of the patch, it must have as many faces as the
-  // complex has triangles there; otherwise two, which pass the edge in opposite directions.
+  // Checks the faces at an edge. If the edge lies on a curve of the patch, it must have as many faces of the
+  // patch as the complex has triangles of the patch there; otherwise two. If there are two, they must pass
+  // the edge in opposite directions.
   void check_edge(std::size_t first, std::size_t last) {
     const PatchEdge& side = sides_[first];
     const Index curve = uses_.curve_of(side.ends);
@@ -108,7 +109,8 @@ class TopologyCheck {
           patch_.tag, last - first, side.ends[0], side.ends[1], At{where});
   }
 
-  // Checks that every edge of the patch's curves has faces of the patch.
+  // Checks that every mesh edge on a curve of the patch has a face of the patch, if the complex has one
+  // there.
   void check_curves() {
     for (const Index curve : patch_.curves) {
       const std::size_t expected = uses_.triangles_at(curve, id_);

@@ -117,8 +117,8 @@ class PatchCheck {
     return false;
   }
 
-  // Compares areas projected along the plane's normal, with signs. (A turned face has a finding of its own,
-  // so its area counts as positive here.)
+  // Compares `found`, the sum of signed areas projected along the plane's normal, with the complex. (A turned
+  // face has a finding of its own, so its area counts as positive here.)
   void compare_area(double found) {
     const auto [expected, allowed] = planar_area(to_check_, id_);
     check_measure(area_of_patch, {"patch", id_, patch_.tag}, to_check_.plc_corner(triangle(0), 0), found,
@@ -143,9 +143,9 @@ class PatchCheck {
         on_face ? fmt::format("Face {} of patch {} (tag {}) is {:.6g} away from the patch at {}", sample.face,
                               id_, patch_.tag, sample.distance, At{sample.place})
                 : fmt::format(
-                      "Face {}, the nearest mesh face of patch {} (tag {}), is {:.6g} away from the patch's "
-                      "point at {}",
-                      sample.face, id_, patch_.tag, sample.distance, At{sample.place});
+                      "The point of patch {} (tag {}) at {} is {:.6g} away from the patch's nearest mesh face, "
+                      "face {}",
+                      id_, patch_.tag, At{sample.place}, sample.distance, sample.face);
     findings_.add(guarantee::patch_distance, sample.place, {id_, sample.face},
                   "{}, allowed is {:.6g}; use a smaller size there or allow a larger distance.", what,
                   allowed);

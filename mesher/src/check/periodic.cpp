@@ -45,13 +45,13 @@ double rounding_of(const TetMesh::Motion& motion, double r) {
   return (evaluations * evaluation + others) * unit_roundoff * r;
 }
 
-/// The check of one pair of groups.
+/// The check of one pair of groups of faces.
 class PeriodicCheck {
  public:
   PeriodicCheck(const TetMesh& mesh, std::size_t number, Findings& findings)
       : mesh_(mesh), pair_(mesh.periodic[number]), number_(number + 1), findings_(findings) {}
 
-  /// Returns the map from nodes to images, if it can be used.
+  /// Returns the map from nodes to images; nothing if it names nodes that the mesh does not have.
   std::optional<Map> run() {
     check_motion();
     if (!read_map()) return std::nullopt;

@@ -30,7 +30,7 @@ std::vector<Tag> sorted_tags(const Features& features) {
   return tags;
 }
 
-// Returns whether at least half of the entities have a tag of the complex.
+// Returns whether at least half of the entities' tags are tags of features.
 template <class Features>
 bool are_known(const std::vector<Tag>& tags, const Features& features) {
   const std::vector<Tag> known = sorted_tags(features);
@@ -39,7 +39,7 @@ bool are_known(const std::vector<Tag>& tags, const Features& features) {
   return 2 * static_cast<std::size_t>(count) >= tags.size();
 }
 
-// Returns whether the tags tell features apart, instead of only saying that an entity lies on some feature.
+// Returns whether the features have different tags. If not, a tag says only that an entity lies on a feature.
 template <class Features>
 bool tell_apart(const Features& features) {
   return std::any_of(features.begin(), features.end(),
@@ -75,7 +75,7 @@ class InnerPatches {
     return distance <= to_check_.patch_allowance[patch] &&
            (kind == Kind::any || to_check_.plc.patches[patch].planar);
   }
-  /// Returns the patch's normal at the triangle, of any length.
+  /// Returns a normal, of any length, of the patch nearest to the triangle, at the nearest place.
   Vector normal(const Triangle& corners) const {
     const Plc::Triangle& t =
         to_check_.plc.triangles[numbers_[triangles_.nearest(to_check_.centroid(corners)).triangle]];
@@ -108,11 +108,11 @@ class InnerPatches {
   const MeshToCheck& to_check_;
   std::vector<Index> numbers_;  // numbers of the complex's triangles
   DistanceTree triangles_;
-  std::vector<std::int8_t> near_;  // by mesh point: 1 if it is on one of these patches, 0 if not, -1 if not
-                                   // computed yet
+  std::vector<std::int8_t> near_;  // by mesh point: 1 if it is on one of these patches, 0 if on none, -1 if
+                                   // not computed yet
 };
 
-// The segments of all curves as flat triangles, with their positions on the curves.
+// The segments of all curves, as degenerate triangles, with their positions on the curves.
 struct CurveSegments {
   explicit CurveSegments(const Plc& plc) : lengths(plc.curves.size(), 0) {
     for (Index c = 0; c < plc.curves.size(); ++c)
@@ -131,9 +131,9 @@ struct CurveSegments {
   std::vector<double> lengths;  // by curve
 };
 
-// A test of tags that are only numbers given by the builder of the complex, which change with the order of
-// the facets: they fit if at least half of the faces or edges in a sample are nearest to a feature with their
-// tag.
+// A test whether the tags of a mesh fit, if tags are only numbers that the builder of the complex gives in
+// the order of the facets. They fit if at least half of the faces or edges in a sample have the tag of the
+// feature nearest to their middle.
 class Numbers {
  public:
   explicit Numbers(const MeshToCheck& to_check) : to_check_(to_check) {}
@@ -213,9 +213,9 @@ class Placement {
   }
 
  private:
-  // Marks the listed edges that are edges of tets but lie on no curve, and whose tag is not that of a curve:
-  // other programs list the edges along which they divide faces, and the seams of round faces. Returns no
-  // marks if there are none.
+  // Marks the listed edges that are edges of tets but lie on no curve and have no tag that identifies a
+  // curve: other programs list the edges along which they divide faces, and the seams of round faces. Returns
+  // an empty list if there are no such edges.
   std::vector<bool> stray_edges() const {
     const TetMesh& mesh = to_check_.mesh;
     if (mesh.edges.empty()) return {};
@@ -268,8 +268,8 @@ class Placement {
     keep(mesh_.edge_mid_nodes);
   }
 
-  // Returns whether the tet has a region of the complex. Its tag may be the region's number, because some
-  // formats have room for one number only.
+  // Returns whether the tet has a region of the complex. Its tag must be that of the region or, because some
+  // formats store only one number, the region's number.
   bool has_region(Index tet) const {
     const Index region = to_check_.mesh.tet_region[tet];
     const Tag tag = to_check_.mesh.tet_tag[tet];
@@ -287,8 +287,8 @@ class Placement {
     std::sort(sides_.begin(), sides_.end());
   }
 
-  /// Calls visit(sides, number, face) for each triangle: the sides of tets there, their number, and the
-  /// listed face there, or none.
+  /// Calls visit(sides, number, face) for each triangle: the sides of tets there, how many there are, and the
+  /// listed face there (or none).
   template <class Visit>
   void for_each_triangle(const Visit& visit) const {
     for (std::size_t i = 0, j = 0; i < sides_.size(); i = j) {
@@ -407,8 +407,8 @@ class Placement {
     friend bool operator<(const PlaceOnCurve& a, const PlaceOnCurve& b) { return a.arc < b.arc; }
   };
 
-  // Makes edges on curves: for a bent curve those that `border_edges` finds, if any; otherwise the edges of
-  // tets between consecutive points on the curve.
+  // Makes edges on curves: those that `border_edges` finds on a bent curve, if the mesh's own faces are kept;
+  // if there are none, the edges of tets between consecutive points on the curve.
   void make_edges() {
     report_.notes.emplace_back(
         mesh_.edges.empty()
@@ -466,7 +466,8 @@ class Placement {
     return chains;
   }
 
-  // Returns the points that may be on curves: corners of faces or, if a curve is on no patch, of any cells.
+  // Returns the points that may be on curves, without mid-edge nodes: the corners of faces or, if a curve is
+  // on no patch, all points.
   std::vector<Index> candidates() const {
     std::vector<bool> is_candidate(
         mesh_.points.size(),
@@ -516,7 +517,7 @@ std::optional<TetMesh> place_by_position(const MeshToCheck& to_check, CheckRepor
   if (to_check.mesh.features.empty()) return Placement(to_check, report, findings).run();
   const Numbers numbers(to_check);
   if (numbers.fit_faces() && numbers.fit_edges()) return std::nullopt;
-  TetMesh unplaced = to_check.mesh;  // the labels of a complex with another numbering are dropped
+  TetMesh unplaced = to_check.mesh;  // will lose its labels: they follow another numbering
   unplaced.features.clear();
   std::fill(unplaced.face_patch.begin(), unplaced.face_patch.end(), none);
   std::fill(unplaced.edge_curve.begin(), unplaced.edge_curve.end(), none);

@@ -25,8 +25,8 @@ class Polyline {
   struct Nearest {
     double arc, distance;
   };
-  /// Returns the nearest point of the part between two positions. Cost: linear in that part, plus a
-  /// bisection.
+  /// Returns the point nearest to p on the part between two positions. Cost: linear in the segments of that
+  /// part, plus a bisection.
   Nearest nearest(const Point& p, double from, double to) const;
   Nearest nearest(const Point& p) const { return nearest(p, 0, length()); }
 

@@ -51,7 +51,7 @@ Meeting meet(const Point& p, const Point& q, const CornerPoints& t) {
   return {on_border ? Crossing::at_border : Crossing::inside, from > 0};
 }
 
-// Returns the position along pq, from 0 to 1, of the plane of the triangle.
+// Returns where the segment pq meets the plane of the triangle: 0 at p, 1 at q.
 double place_of_plane(const Point& p, const Point& q, const CornerPoints& t) {
   const double from = std::fabs(six_volume(t[0], t[1], t[2], p)),
                to = std::fabs(six_volume(t[0], t[1], t[2], q));
@@ -68,7 +68,8 @@ const RegionLocator::Trees& RegionLocator::trees() const {
 }
 
 // Follows the ray from p through `target` to twice the target's distance. Returns the region on p's side of
-// the first triangle that the ray meets; none if the ray meets no triangle, or the border of any.
+// the first triangle that the ray meets; none if the ray meets no triangle, or meets the border of a
+// triangle.
 Index RegionLocator::region_on_the_way(const Point& p, const Point& target) const {
   const Point beyond = target + (target - p);
   double first = INFINITY;

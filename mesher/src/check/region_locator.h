@@ -18,8 +18,9 @@ class RegionLocator {
   /// Returns the region of a point, 0 outside all regions. Precondition: the point is not on a patch. Follows
   /// a ray from the point to a place on the nearest triangle, and returns the region on the point's side of
   /// the first triangle that the ray meets, by exact arithmetic. If the ray meets the border of a triangle or
-  /// lies in the plane of one, tries another place, then another triangle. Cost: O(n log n) for n triangles
-  /// the first time, then that of finding the nearest triangle: logarithmic for most points.
+  /// lies in the plane of one, tries another place, then another triangle. Cost: the first call takes O(n log
+  /// n) for n triangles; later calls take as long as finding the nearest triangle: logarithmic for most
+  /// points.
   Index region_at(const Point& p) const;
 
  private:

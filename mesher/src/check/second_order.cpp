@@ -12,7 +12,7 @@ using cell_shapes::tet_edges;
 
 namespace {
 
-/// A mid-edge node of a cell of dimension `dimension`.
+/// A mid-edge node, as given by one of the cells at its edge: a tet, face or edge.
 struct MidNode {
   std::array<Index, 2> edge;
   Index node;

@@ -1,4 +1,4 @@
-// Compares volumes, areas and lengths of the mesh with those of the input.
+// Measures volumes, areas and lengths of the mesh and of the input, and compares the volumes.
 #include <cassert>
 #include <cmath>
 #include <string>

@@ -60,7 +60,7 @@ struct PatchMeeting {
   }
 };
 
-/// Returns where patches that bound no region meet: one edge for each pair of patches and value of `agree`.
+/// Returns the meetings of patches that bound no region, one for each pair of patches and value of `agree`.
 /// Edges of more than two triangles do not count.
 std::vector<PatchMeeting> meetings_of(const MeshToCheck& to_check, const Plc& plc) {
   struct Side {
@@ -94,7 +94,7 @@ std::vector<PatchMeeting> meetings_of(const MeshToCheck& to_check, const Plc& pl
 }
 
 /// Surfaces of patches that meet, by union-find. Each patch has a mark that tells whether it must be turned
-/// against the first patch of its surface.
+/// to agree with its parent in the union-find tree.
 class MetSurfaces {
  public:
   explicit MetSurfaces(std::size_t patches)

@@ -80,8 +80,9 @@ void check_angles(const MeshToCheck& to_check, CheckReport& report, Findings& fi
     for (unsigned i = 0; i < 3; ++i)
       if (given.is_corner(face, i)) least = std::min(least, angles.at[i] / 2);
     const double largest =
-        least < least_triangle_angle ? 180 - 3 * least : largest_triangle_angle;  // because the sum of the
-                                                                                  // angles is 180
+        least < least_triangle_angle ? 180 - 3 * least : largest_triangle_angle;  // the given corner has 2 *
+                                                                                  // least, another at least
+                                                                                  // least, and the sum is 180
     if (angles.least() >= least && angles.largest() <= largest) {
       ++measures.at_sharp_corners;
       continue;
@@ -128,9 +129,9 @@ Vector jacobian_at(const CurvedTriangle& n, double s, double t) {
   return cross(ds, dt);
 }
 
-/// Returns whether the Jacobian is positive everywhere. The normal's component along the normal of the
-/// straight triangle is a polynomial of degree 2; its coefficients in Bernstein's basis bound it from below.
-/// They follow from its values at the corners and at the middles of the sides.
+/// Returns whether bounds prove that the Jacobian is positive everywhere. The normal's component along the
+/// normal of the straight triangle is a polynomial of degree 2; its coefficients in Bernstein's basis bound
+/// it from below. They follow from its values at the corners and at the middles of the sides.
 bool jacobian_is_positive(const CurvedTriangle& n) {
   const Vector normal = cross(n[1] - n[0], n[2] - n[0]);
   const auto value = [&](double s, double t) { return dot(jacobian_at(n, s, t), normal); };

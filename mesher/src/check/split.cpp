@@ -23,7 +23,7 @@ using Corners = std::array<Index, 3>;
 
 constexpr double rounding = 1e-10;  // relative tolerance: the same sums are added in another order
 
-/// Returns for each node the smallest node at the same place.
+/// Returns for each node the node with the smallest index at the same place.
 std::vector<Index> places_of(const std::vector<Point>& points) {
   std::vector<Index> order(points.size()), places(points.size());
   std::iota(order.begin(), order.end(), Index{0});
@@ -35,7 +35,7 @@ std::vector<Index> places_of(const std::vector<Point>& points) {
   return places;
 }
 
-/// A side of a tet; its corners by place and by number.
+/// A side of a tet. `place`: for each corner, the smallest node at its place, sorted.
 struct PlacedSide {
   Corners place, corners;
   Index tet = none;
@@ -67,7 +67,7 @@ class SplitCheck {
   }
   const Point& at(Index node) const { return mesh_.points[node]; }
 
-  /// Finds the sides of the tets that have a node at the same place as another node. Sorts them by place.
+  /// Finds all sides of each tet that has a node at the place of another node. Sorts them by place.
   void find_sides() {
     for (Index t = 0; t < mesh_.tets.size(); ++t) {
       if (std::none_of(mesh_.tets[t].begin(), mesh_.tets[t].end(), [&](Index v) { return shared_[v]; }))
@@ -125,7 +125,8 @@ class SplitCheck {
     }
   }
 
-  /// Returns whether two faces of different sides have opposite orientations, mid-edge nodes included.
+  /// Returns whether two faces are on the two sides of a split patch and have opposite orientations, mid-edge
+  /// nodes included.
   bool are_opposite(Index f, Index g) const {
     if (other_side_.at(mesh_.face_tag[f]) != mesh_.face_tag[g]) return false;
     const Corners &a = mesh_.faces[f], &b = mesh_.faces[g];
@@ -181,7 +182,7 @@ class SplitCheck {
   const TetMesh& mesh_;
   Findings& findings_;
   std::vector<Index> places_;
-  std::vector<bool> shared_;  // nodes that share their place with another node
+  std::vector<bool> shared_;  // by node: whether another node is at its place
   std::map<Tag, Tag> other_side_;
   std::vector<PlacedSide> sides_;
 };

@@ -11,7 +11,7 @@
 namespace collarmesh::guarantee {
 
 inline constexpr char split_nodes[] = "split_nodes";      ///< nodes coincide at split triangles only
-inline constexpr char split_sectors[] = "split_sectors";  ///< no node holds two sectors together
+inline constexpr char split_sectors[] = "split_sectors";  ///< no node joins tets that split patches separate
 inline constexpr char split_pairs[] = "split_pairs";  ///< each triangle of one side coincides with one of the
                                                       ///< other side
 inline constexpr char split_measures[] = "split_measures";  ///< volumes and areas are those before the split
@@ -29,10 +29,10 @@ struct SplitMeasures {
 /// Measures a mesh before anything is split.
 SplitMeasures measure_before_split(const TetMesh& mesh);
 
-/// Checks a mesh that was split, by positions and by tets alone: only nodes of triangles of two sides share a
-/// place; the tets at each such node are connected by their sides; each triangle of a side has exactly one
-/// tet, and one triangle of the other side at its place, with opposite orientation; volumes and areas are
-/// those before the split. Adds findings.
+/// Checks a mesh with split patches, by positions and tets alone: only nodes of split triangles share a
+/// place; the tets at each such node are connected through common sides; each split triangle belongs to
+/// exactly one tet, and coincides with one triangle of the other side, of opposite orientation; volumes and
+/// areas are those before the split. Adds findings.
 void check_split(const TetMesh& mesh, const std::vector<Sides>& sides, const SplitMeasures& before,
                  CheckReport& report);
 

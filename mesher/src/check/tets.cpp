@@ -27,7 +27,8 @@ CornersOfTet corners_of(const TetMesh& mesh, Index tet) {
   return {mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]};
 }
 
-/// Tets whose angles miss their bounds. The findings list the worst ones first, with the features there.
+/// Tets whose angles miss their bounds. The findings list the worst ones first, with the features that they
+/// touch.
 class MissedAngles {
  public:
   /// `share`: the factor, above 1, by which the tet's worst angle misses its bound.

@@ -45,7 +45,8 @@ struct Thicknesses {
   double area = 0;       // area from which rays were sent
   double area_with = 0;  // part of that area whose rays meet an opposite surface
   double input = 0, mesh = 0;
-  Point where;            // on the ray on which the thickness in the mesh and in the complex differ most
+  Point where;            // start of the ray on which the thickness in the mesh and in the complex differ
+                          // most
   double farthest = 0;    // that difference
   Index opposite = none;  // the patch where that ray ends
 };
@@ -112,9 +113,9 @@ class ThicknessKept {
     sums.opposite = other;
   }
 
-  /// Returns how far a ray goes through the region: from where it enters through faces of one patch to where
-  /// it leaves through faces of another one. If it enters or leaves several times, takes the entry and the
-  /// exit that are nearest to those in the complex. NaN if one of them is missing.
+  /// Returns how far a ray goes through the region in the mesh: from where it enters through faces of `patch`
+  /// to where it leaves through faces of `other`. If it enters or leaves several times, takes the entry and
+  /// the exit that are nearest to those in the complex. NaN if one of them is missing.
   double between(const Thickness::Ray& ray, double distance, Index patch, Index other, Index region,
                  Thickness::Crossings& crossings) const {
     const TetMesh& mesh = to_check_.mesh;

@@ -1,4 +1,5 @@
-// Checks that the complex's vertices are in the mesh, and the features that the mesh gives for its points.
+// Checks that the complex's vertices are in the mesh, and that points lie on the features that the mesh gives
+// for them.
 #include "check/mesh_to_check.h"
 
 #include <cassert>

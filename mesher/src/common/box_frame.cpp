@@ -14,9 +14,9 @@ void for_each_edge(std::span<const Point> points, Triangles triangles, const Vis
     for (unsigned i = 0; i < 3; ++i) visit(points[t[(i + 1) % 3]] - points[t[i]]);
 }
 
-/// Returns the main direction of the edges or, if the unit vector `across` is not zero, of their components
-/// orthogonal to it; zero if all these are zero. Starts with the direction of the longest edge; each step
-/// turns it towards the directions of the other edges.
+/// Returns the main direction of the edges' components orthogonal to `across`, which is a unit vector or
+/// zero; zero if all these components are zero. Starts with the direction of the longest component; each step
+/// turns it towards the directions of the others.
 Vector main_direction(std::span<const Point> points, Triangles triangles, const Vector& across) {
   constexpr unsigned steps = 3;
   const auto part_of = [&](const Vector& edge) { return edge - dot(edge, across) * across; };

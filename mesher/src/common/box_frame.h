@@ -19,8 +19,8 @@ class BoxFrame {
 
   bool turned() const { return turned_; }
 
-  /// Extends a box along the frame's axes by the points whose distance from p along each axis is at most
-  /// `reach`, and by a margin for rounding errors.
+  /// Extends a box along the frame's axes to contain all points at most `reach` away from p along each axis,
+  /// with a margin for rounding errors.
   void add(Box& box, const Point& p, double reach = 0) const {
     const Point q =
         turned_ ? Point{dot(axes_[0], p - origin_), dot(axes_[1], p - origin_), dot(axes_[2], p - origin_)}

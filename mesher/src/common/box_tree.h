@@ -21,7 +21,7 @@ class BoxTree {
     if (!tree_.empty()) pairs_within(0, visit);
   }
 
-  /// Calls visit(i) for every item whose box meets this one.
+  /// Calls visit(i) for every item whose box meets `box`.
   template <class Visit>
   void for_each_meeting(const Box& box, const Visit& visit) const {
     descend([&](const Box& b) { return boxes_meet(b, box); }, visit);

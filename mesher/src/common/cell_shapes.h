@@ -65,7 +65,8 @@ constexpr CellShape shape_of(CellKind kind) {
   }
 }
 
-/// Returns the place of the mid-edge node of an edge among all nodes of a cell of second order.
+/// Returns the position, among all nodes of a cell of second order, of the mid-edge node of the edge between
+/// corners i and j.
 constexpr std::size_t mid_node_place(const CellShape& shape, std::uint8_t i, std::uint8_t j) {
   for (std::size_t e = 0; e < shape.edges.size(); ++e)
     if ((shape.edges[e][0] == i && shape.edges[e][1] == j) ||

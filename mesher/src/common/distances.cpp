@@ -44,7 +44,7 @@ double squared_distance_to_segment(const Point& p, const Point& a, const Point& 
 }
 
 // First tests the distance from the plane, which decides for most points, and whether the point projects into
-// the triangle. If it does not, the nearest point lies on one of the sides beyond which it is.
+// the triangle. If it does not, the nearest point of the triangle lies on a side that has p beyond it.
 bool is_within(double squared_bound, const Point& p, const Point& a, const Point& b, const Point& c) {
   const Vector u = b - a, w = c - a, n = cross(u, w);
   const double nn = squared_norm(n), longest = std::max(squared_norm(u), squared_norm(w));

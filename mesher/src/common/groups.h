@@ -83,8 +83,7 @@ void for_each_group(std::size_t groups, std::size_t count, const Visit& visit, c
         for (std::size_t g = 1; g <= range; ++g) end[g] += end[g - 1];
         std::vector<Item> items(all.size());
         for (const Dealt& d : all)
-          items[end[d.group]++] = d.item;  // at the end, end[g] is the end of group
-                                           // g
+          items[end[d.group]++] = d.item;  // after this loop, end[g] is the end of group g
         std::size_t begin = 0;
         for (std::size_t g = 0; g < range && begin < items.size(); begin = end[g++])
           if (end[g] > begin) use(r * range + g, std::span(items).subspan(begin, end[g] - begin));

@@ -74,7 +74,8 @@ class Hierarchy {
     return all;
   }
 
-  /// Replaces the item i of each leaf, from a node on, by `item(i)`. Precondition: leaves have one item.
+  /// Replaces the item i of each leaf, among the nodes from `from` on, by `item(i)`. Precondition: leaves
+  /// have one item.
   template <class Item>
   void renumber(const Item& item, Index from = 0) {
     for (Index node = from; node < node_count(); ++node)

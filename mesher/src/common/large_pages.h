@@ -31,7 +31,8 @@ inline void prefer_large_pages([[maybe_unused]] void* block, [[maybe_unused]] st
 #endif
 }
 
-// ThreadSanitizer does not see mremap, so it would report false races where a thread's stack was before.
+// ThreadSanitizer does not see mremap, so after a remap it would report false races at addresses that a
+// thread's stack had before.
 #if defined(__linux__) && !defined(__SANITIZE_THREAD__)
 #define COLLARMESH_REMAPS 1
 #else
@@ -47,8 +48,8 @@ inline bool grows_in_place([[maybe_unused]] std::size_t bytes) {
 #endif
 }
 
-/// Resizes `block` (initially null) to this many bytes, and keeps as many of its bytes as fit. Large blocks
-/// are remapped by the system instead of being copied. Throws std::bad_alloc.
+/// Resizes `block`, which has `bytes` bytes (null: none yet), to `new_bytes`, and keeps the contents that
+/// fit. Large blocks are remapped by the system instead of being copied. Throws std::bad_alloc.
 inline void* resized_block(void* block, [[maybe_unused]] std::size_t bytes, std::size_t new_bytes) {
 #if COLLARMESH_REMAPS
   const auto pages = [](std::size_t size) { return (size + large_page - 1) / large_page * large_page; };

@@ -12,7 +12,7 @@ namespace collarmesh {
 using PrismCorners = std::array<Point, 6>;
 using PyramidCorners = std::array<Point, 5>;
 
-/// Returns the Jacobian along the edge of a linear prism that rises from a corner of its triangle: a
+/// Returns the Jacobian along the edge of a linear prism that rises from a corner of its base triangle: a
 /// quadratic polynomial in Bernstein form. Between these edges the Jacobian is linear.
 inline std::array<double, 3> jacobian_along_edge(const PrismCorners& p, unsigned corner) {
   const unsigned a = corner, b = (corner + 1) % 3, c = (corner + 2) % 3;

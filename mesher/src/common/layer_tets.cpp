@@ -45,7 +45,7 @@ class MidNodes {
     mesh_.points.push_back(middle);
     if (!mesh_.features.empty()) mesh_.features.push_back({});
   }
-  /// Records that the node of a listed quadrangle's diagonal lies on its patch.
+  /// Records that the node of a listed quadrangle's diagonal lies on the quadrangle's patch.
   void place_diagonal(const Quadrangle& q, Index patch) {
     if (!mesh_.features.empty()) mesh_.features[find(q[0], q[2])] = {2, patch};
   }

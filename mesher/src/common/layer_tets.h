@@ -9,10 +9,10 @@ namespace collarmesh {
 
 /// Returns the mesh with its prisms and pyramids cut into tets, which follow the mesh's own tets, and its
 /// quadrangles cut into triangles. Quadrangles are cut along the diagonals from their corners of smallest
-/// index, so that neighbours conform. In second order each diagonal gets a node, where the quadrangle's nodes
-/// place its middle. The result's `layers` has only `tet_layer`, which is above 0 for all tets of prisms and
-/// pyramids. Precondition: the arrays of a kind of cell have the same length. Cost: linear; in second order
-/// O(n log n) for n edges of the mesh.
+/// index, so that neighbours conform. In second order each diagonal gets a node in the middle of the
+/// quadrangle, interpolated from its nodes. The result's `layers` has only `tet_layer`, which is above 0 for
+/// all tets of prisms and pyramids. Precondition: the arrays of a kind of cell have the same length. Cost:
+/// linear; in second order O(n log n) for n edges of the mesh.
 TetMesh tets_of_layers(const TetMesh& mesh);
 
 /// Throws OptionError if the mesh has prisms or pyramids. `what` begins the message.

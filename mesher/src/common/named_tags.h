@@ -15,7 +15,8 @@ std::set<Tag> tags_named(const std::string& text, std::size_t dimension, const T
 
 /// Returns these tags of patches with their names, for a message; only the first ones if they are many.
 std::string list_of_patches(const std::set<Tag>& tags, const TagNames& names);
-/// Returns all patches of a complex as text, like the function above.
+/// Returns the tags of all patches of a complex with their names, for a message; only the first if they are
+/// many.
 std::string list_of_patches(const Plc& plc);
 
 }  // namespace collarmesh

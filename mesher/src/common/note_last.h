@@ -6,7 +6,8 @@
 
 namespace collarmesh {
 
-/// Raises `last` to `item` if `last` is smaller, or none. Several threads may call it at once unless `alone`.
+/// Sets `last` to `item` if `last` is smaller or none. Several threads may call it at once if `alone` is
+/// false.
 inline void note_last(Index& last, Index item, bool alone) {
   if (alone) {
     if (last == none || last < item) last = item;

@@ -23,7 +23,7 @@ void parallel_for(std::size_t count, const Work& work,
   if (recorded_costs::on) return recorded_costs::run(count, work, place);
 #ifdef __SANITIZE_THREAD__
   // ThreadSanitizer cannot see how TBB synchronizes threads, because TBB's library is not instrumented; so
-  // these builds use plain threads, a number that exists on any machine.
+  // these builds use plain threads, the same number on every machine.
   constexpr int threads = 8;
   std::atomic<std::size_t> next{0};
   const auto take_turns = [&] {

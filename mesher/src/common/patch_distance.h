@@ -28,8 +28,8 @@ class PatchDistance {
     double tolerance;  ///< tolerance at the sample
   };
 
-  /// Keeps references to all arguments, and to the contents of the spans. `patch_points` are sorted, as in
-  /// PatchPoints.
+  /// Keeps references to all arguments, and to the contents of the spans. `patch_points`: the points of the
+  /// patch, as in PatchPoints.
   PatchDistance(const TetMesh& mesh, const Plc& plc, const SurfaceTolerance& tolerance, Index patch,
                 std::span<const Index> faces, std::span<const Index> patch_points)
       : mesh_(mesh),
@@ -54,7 +54,7 @@ class PatchDistance {
    public:
     explicit SeenSides(std::size_t faces) : places_(std::bit_ceil(2 * faces + 1), {none, none}) {}
 
-    /// Records a side; returns false if it was seen.
+    /// Records a side; returns false if the cache had it already.
     bool add(Index a, Index b) {
       const std::array<Index, 2> side{std::min(a, b), std::max(a, b)};
       auto& place = places_[spread(edge_key(a, b)) & (places_.size() - 1)];

@@ -36,7 +36,7 @@ void write();
 class StagePart {
  public:
   explicit StagePart(std::string_view work);
-  /// Continues the stage.
+  /// Ends the part; later costs belong to the stage again.
   ~StagePart();
   StagePart(const StagePart&) = delete;
   StagePart& operator=(const StagePart&) = delete;

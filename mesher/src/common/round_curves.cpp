@@ -10,7 +10,7 @@ namespace collarmesh {
 
 namespace {
 
-// The polyline of a half circle turns by at least this angle.
+// The polyline of a half circle turns by at least this angle (radians).
 constexpr double least_turn = 0.85 * std::numbers::pi;
 
 }  // namespace

@@ -112,7 +112,7 @@ void RunControl::attempt(double share_of_time, const std::function<void()>& work
   restore();
 }
 
-/// Forwards the progress of a stage, scaled to its share of the whole.
+/// Forwards the progress of a stage, scaled to its share of the whole run.
 bool RunControl::go_on(ProgressReport report) {
   fraction_ = std::max(fraction_, from_ + std::clamp(report.fraction, 0.0, 1.0) * (to_ - from_));
   report.fraction = fraction_;

@@ -11,7 +11,7 @@
 
 namespace collarmesh {
 
-/// Thrown if a stage stops early; `PipelineResult::result` says why.
+/// The exception that ends a run early; `PipelineResult::result` says why.
 struct Ended {};
 
 /// The time limit, the cancellation and the progress that all stages of a run share.

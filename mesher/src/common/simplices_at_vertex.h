@@ -24,8 +24,8 @@ inline bool all_differ(const std::array<Index, 4>& t) {
 
 /// Calls `use(vertex, cells)` for the vertices of a mesh, from several threads at once and in no particular
 /// order. `cells` are first the tets that have the vertex and a corner with a larger number, then the listed
-/// faces in which the vertex has the smallest number; both in their order. Faces are numbered after all tets.
-/// Precondition: corners are points of the mesh. Cost: linear; 24 bytes per tet.
+/// faces in which the vertex has the smallest number; both in the order of the mesh. Faces are numbered after
+/// all tets. Precondition: corners are points of the mesh. Cost: linear; 24 bytes per tet.
 template <class Use>
 void for_each_vertex_with_cells(const TetMesh& mesh, const Use& use) {
   const std::size_t tets = mesh.tets.size();

@@ -8,8 +8,8 @@
 
 namespace collarmesh {
 
-/// A limit on the threads of parallel parts: the work that `run` calls uses at most this number, and never
-/// more than there are cores or the system allows. 0: no further limit.
+/// A limit on the threads of parallel parts: the work that `run` calls uses at most `threads` threads, and
+/// never more than there are cores or the system allows. For 0, only the latter holds.
 class ThreadLimit {
  public:
   explicit ThreadLimit(unsigned threads)

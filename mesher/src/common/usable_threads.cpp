@@ -46,7 +46,8 @@ bool tbb_has_its_threads(int threads) {
   return true;
 }
 
-/// Returns the number of cores. COLLARMESH_CORES in the environment replaces it, for tests on small machines.
+/// Returns the number of cores to use: `there`, or COLLARMESH_CORES in the environment, for tests on small
+/// machines.
 int cores_to_use(int there) {
   constexpr int most = 1024;
   const char* const wanted = std::getenv("COLLARMESH_CORES");

@@ -189,8 +189,9 @@ void require_plane(const std::string& path, const TetMesh& mesh) {
   for (const Point& p : mesh.points)
     if (std::fabs(p.z) > flat * box.diagonal())
       throw WriteError(fmt::format(
-          "{}: elements in a plane lie in the plane z = 0, but there is a node at ({:.6g}, {:.6g}, {:.6g}); "
-          "move or turn the domain there, or leave --triangle-elements out",
+          "{}: plane-stress and plane-strain elements must lie in the plane z = 0, but there is a node at "
+          "({:.6g}, {:.6g}, {:.6g}); move or turn the domain into this plane, or leave out "
+          "--triangle-elements",
           path, p.x, p.y, p.z));
 }
 

@@ -13,9 +13,9 @@ namespace collarmesh {
 
 namespace {
 
-/// Returns the derivatives of the position in a shape with nodes x by its barycentric coordinates, at lambda.
-/// In the derivative by lambda_i, corner i has the weight 4 lambda_i - 1; the mid-edge node of an edge ij has
-/// the weight 4 lambda_j.
+/// Returns the derivatives of the position by barycentric coordinates, at lambda, in a shape of second order
+/// with nodes x. In the derivative by lambda_i, corner i has the weight 4 lambda_i - 1; the mid-edge node of
+/// an edge ij has the weight 4 lambda_j.
 template <std::size_t corners, std::size_t nodes>
 std::array<Vector, corners> derivatives(const std::array<Point, nodes>& x,
                                         const std::array<std::array<unsigned, 2>, nodes - corners>& edges,
