@@ -254,7 +254,7 @@ TEST(ReadSizeField, ErrorsNameTheFile) {
   refused(option, "a.json", "{", "this is not JSON");
   refused(option, "a.json", R"({"size": 1e999})", "larger than any double");
   refused(option, "a.json", "{}", "asks for no size");
-  refused(option, "a.json", std::string(5000, '['), "nested deeper than");
+  refused(read, "a.json", std::string(5000, '['), "nested deeper than");
   refused(read, "a.msh", "$Nodes\n", "");
   refused(read, "a.stl", "", "fields on points are read from .vtu and .msh only");
 }

@@ -137,8 +137,8 @@ TopoDS_Shape closed(const Topology::Solid& open, const std::string& file, Topolo
     return open.shape;
   }
   sewings.push_back(result);
-  topology.notes.push_back(fmt::format("{}: {} was open; its faces were sewn with a tolerance of {:.3g}", file,
-                                       topology.name(open.shape), result.gap));
+  topology.notes.push_back(fmt::format("{}: {} was open; its faces were sewn with a tolerance of {:.3g}",
+                                       file, topology.name(open.shape), result.gap));
   return solid;
 }
 

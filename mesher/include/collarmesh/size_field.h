@@ -52,7 +52,7 @@ class SizeFieldUse {
 /// `size` outside the list holds everywhere; without it only the sources count. Curves and patches are named
 /// by their tags. Lengths are in input units. The field keeps `use`, if there is one, and records in it the
 /// sizes that each source asks for. Throws OptionError, with the place in the text, for a text that cannot be
-/// used.
+/// used; ReadError for one that is nested too deeply.
 SizeField size_field_from_json(const std::string& text, const Plc& plc,
                                const std::shared_ptr<SizeFieldUse>& use = nullptr);
 

@@ -140,12 +140,13 @@ class PatchCheck {
     const double allowed = sample.tolerance + to_check_.rounding;
     if (sample.distance <= allowed) return;
     const std::string what =
-        on_face ? fmt::format("Face {} of patch {} (tag {}) is {:.6g} away from the patch at {}", sample.face,
-                              id_, patch_.tag, sample.distance, At{sample.place})
-                : fmt::format(
-                      "The point of patch {} (tag {}) at {} is {:.6g} away from the patch's nearest mesh face, "
-                      "face {}",
-                      id_, patch_.tag, At{sample.place}, sample.distance, sample.face);
+        on_face
+            ? fmt::format("Face {} of patch {} (tag {}) is {:.6g} away from the patch at {}", sample.face,
+                          id_, patch_.tag, sample.distance, At{sample.place})
+            : fmt::format(
+                  "The point of patch {} (tag {}) at {} is {:.6g} away from the patch's nearest mesh face, "
+                  "face {}",
+                  id_, patch_.tag, At{sample.place}, sample.distance, sample.face);
     findings_.add(guarantee::patch_distance, sample.place, {id_, sample.face},
                   "{}, allowed is {:.6g}; use a smaller size there or allow a larger distance.", what,
                   allowed);

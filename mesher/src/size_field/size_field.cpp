@@ -202,7 +202,7 @@ SizeField size_field_from_json(const std::string& text, const Plc& plc,
   try {
     json = Json::parse(text, [](int depth, Json::parse_event_t, const Json&) {
       if (depth > deepest)
-        throw OptionError(fmt::format(
+        throw ReadError(fmt::format(
             "size field: the JSON is nested deeper than {} levels, so it is no size field", deepest));
       return true;
     });
