@@ -290,7 +290,8 @@ TEST(CadModel, KeepsEdgesThroughThinPlates) {
        {line(gp_Pnt(-5, 5, 1), gp_Pnt(15, 5, 1)), line(gp_Pnt(21, 10, -100), gp_Pnt(21, 10, 100))}) {
     CadModel without(compound({plate, beside}), "part");
     EXPECT_EQ(build_plc(without.tessellate({})).vertices.size(), 8U);
-    expect_mentions(without.notes().at(0), {"outside of the closed solids or on their faces"});
+    expect_mentions(without.notes().at(0),
+                    {"because only edges and vertices of faces or inside closed solids"});
   }
 }
 
