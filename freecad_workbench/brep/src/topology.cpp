@@ -199,7 +199,7 @@ std::string Topology::name(const TopoDS_Shape& shape) const {
 
 namespace {
 
-/// Makes free parts of the edges of a shape without faces, for meshes of lines. Fails if there is no edge.
+/// Makes each edge of a shape without faces a free part, for meshes of lines. Fails if there is no edge.
 void take_wires(const TopoDS_Shape& shape, const std::string& file, Topology& topology) {
   for (const TopoDS_Shape& edge : subshapes(shape, TopAbs_EDGE))
     if (!BRep_Tool::Degenerated(TopoDS::Edge(edge)))

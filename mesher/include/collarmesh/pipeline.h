@@ -109,21 +109,27 @@ class ComplexSource {
   virtual void adapt(const Plc& plc, PipelineOptions& options) = 0;
 };
 
-/// Meshes the solids of a complex, and certifies the mesh against it. If a guarantee is missed, tries further
-/// repairs (`further_repairs`), then constrained tetrahedra if angles miss their bounds, then further seeds;
-/// if no mesh passes, keeps the first one or, of meshes that begin with constrained tetrahedra, the one with
-/// fewest findings. Where features thinner than the feature size make a refinement far too fine, tries
-/// constrained tetrahedra, then coarser repairs (`coarser_repairs`). Makes thin rods from rings of vertices
-/// instead of refining them, if nothing but one size is asked for. If cells have first order, no distance
-/// is asked for and a region's volume is off by more than 2%, a mesh that passes is made again, nearer to the
-/// surfaces, at most twice and each time in at most half of the time that the time limit leaves. A refinement
-/// ends early at a bound on vertices, so that coarser repairs can be tried; these must lose no body, region,
-/// name or tag except numbers of CAD faces. If none of them does better, the first complex is meshed from its
-/// constrained tetrahedra (`Start`) or refined within larger bounds; of two meshes that miss guarantees the
-/// one that misses them at fewer of its tets is kept. `check.notes` lists the attempts. `execution.progress`
-/// is also called at the beginning of each stage (`ProgressReport::begins`); its fraction covers all stages.
-/// If cancelled or out of time, the result has that status and no mesh. Throws PlcError for facets that
-/// cannot be repaired to form a complex, OptionError for conflicting options and for sizes of unknown tags.
+/// Meshes the solids of a complex, and certifies the mesh against it. `check.notes` lists the attempts.
+///
+/// If a guarantee is missed, tries further repairs (`further_repairs`), then constrained tetrahedra if angles
+/// miss their bounds, then further seeds. If no mesh passes, keeps the first one; if all meshes begin with
+/// constrained tetrahedra (`Start`), keeps the one with the fewest findings.
+///
+/// A refinement ends early at a bound on vertices. Then tries coarser repairs (`coarser_repairs`), which must
+/// lose no body, region, name or tag except numbers of CAD faces. If none of them makes a mesh, meshes the
+/// first complex from its constrained tetrahedra or refines it within larger bounds. If both of these meshes
+/// miss guarantees, keeps the refined one unless it misses them at far more of its tets.
+///
+/// Where features thinner than the feature size make a refinement far too fine, tries constrained tetrahedra,
+/// then coarser repairs. Makes thin rods from rings of vertices instead of refining them, if nothing but one
+/// size is asked for. If cells have first order, no distance is asked for and a region's volume is off by
+/// more than 2%, makes a mesh that passes again, nearer to the surfaces: at most twice, and each time in at
+/// most half of the time that the time limit leaves.
+///
+/// `execution.progress` is also called at the beginning of each stage (`ProgressReport::begins`); its
+/// fraction covers all stages. If cancelled or out of time, the result has that status and no mesh. Throws
+/// PlcError for facets that cannot be repaired to form a complex, OptionError for conflicting options and for
+/// sizes of unknown tags.
 SoupPipelineResult run_pipeline(ComplexSource& source, const PipelineOptions& options = {},
                                 const Execution& execution = {});
 

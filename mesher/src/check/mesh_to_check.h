@@ -142,12 +142,12 @@ bool check_arrays(const TetMesh& mesh, Findings& findings);
 /// Checks that points are finite, distinct and nodes of elements. Returns false if a point is not finite.
 bool check_points(const MeshToCheck& to_check, Findings& findings);
 
-/// Finds missing labels of a mesh from a file by position. If a tet's region and tag are not the complex's,
-/// finds the region of each connected part (bounded by listed faces, planar patches and changes of region or
+/// Finds missing labels by position, for meshes from files. If a tet's region and tag are not the complex's,
+/// finds the region of each connected part (bounded by listed faces, planar patches, and changes of region or
 /// tag) from its largest tet. If most tags of faces or edges are missing or unknown to the complex, makes new
-/// faces and edges from the tets and the complex. The result has the complex's labels; a note says which were
-/// found. Returns nothing if no label is missing. Adds a finding for each part outside all regions.
-/// Precondition: check_arrays and check_points hold. Cost: O(n log n).
+/// faces and edges from the tets and the complex. Otherwise leaves out listed edges that lie on no curve. The
+/// result has the complex's labels; notes say what was found or left out. Returns nothing if nothing changes.
+/// Adds a finding for each part outside all regions.
 std::optional<TetMesh> place_by_position(const MeshToCheck& to_check, CheckReport& report,
                                          Findings& findings);
 

@@ -17,7 +17,7 @@ struct Sheet {
 /// The triangles at creases, from which the directions of sheets follow.
 class CreaseSheets {
  public:
-  /// Keeps a reference to `points`. Covers only the given vertices and curves.
+  /// Keeps references to `plc` and `points`. Covers only the given vertices and curves.
   CreaseSheets(const Plc& plc, std::span<const Point> points, std::span<const Index> vertices,
                const std::vector<bool>& is_crease_curve);
 

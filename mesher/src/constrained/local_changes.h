@@ -40,7 +40,8 @@ class LocalChanges {
   void set_budget(std::size_t rings) { budget_ = rings; }
 
   /// Inserts a point in or near some tetrahedra: replaces these, and as many neighbours as necessary, by
-  /// tetrahedra with this point. Returns its number, or none if a required edge or a facet is in the way.
+  /// tetrahedra with this point. Returns its number, or none if a required edge, a vertex, a facet or the
+  /// outer border is in the way, or if too many tetrahedra would be replaced.
   Index insert(const Point& p, std::vector<Index> cavity);
 
  private:

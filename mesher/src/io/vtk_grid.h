@@ -72,7 +72,7 @@ std::vector<VtkArray> names_array(const TetMesh& mesh);
 /// Returns the text in an array of names.
 std::string names_of(const std::vector<std::int64_t>& bytes);
 
-/// Returns the name of the values' type in .vtu files: "Float64".
+/// Returns the name of the values' type in .vtu files, such as "Float64".
 std::string_view vtu_type(const VtkArray& array);
 /// Writes a grid as a .vtu file; takes connectivity, offsets and types out of the grid. Arrays named
 /// `vtk_point_ids` or `vtk_cell_ids` become the grid's GlobalIds. Throws WriteError.

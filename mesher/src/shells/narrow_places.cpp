@@ -53,7 +53,8 @@ void NarrowPlaces::bound_widths() {
       widths_[e] = std::max(widths_[e], least(e, share));
 }
 
-/// Lowers the sizes at the ends of edges to `widths_`, except at edges more than four times as long.
+/// Lowers the sizes at the ends of each edge to `widths_`, unless the edge is more than four times as long as
+/// that. Then grades the sizes.
 void NarrowPlaces::lower_sizes() {
   constexpr double much_longer = 4;
   for (Index e = 0; e < complex_.edges.size(); ++e) {
