@@ -147,7 +147,8 @@ bool check_points(const MeshToCheck& to_check, Findings& findings);
 /// tag) from its largest tet. If most tags of faces or edges are missing or unknown to the complex, makes new
 /// faces and edges from the tets and the complex. Otherwise leaves out listed edges that lie on no curve. The
 /// result has the complex's labels; notes say what was found or left out. Returns nothing if nothing changes.
-/// Adds a finding for each part outside all regions.
+/// Adds a finding for each part outside all regions. Precondition: check_arrays and check_points hold. Cost:
+/// O(n log n).
 std::optional<TetMesh> place_by_position(const MeshToCheck& to_check, CheckReport& report,
                                          Findings& findings);
 
