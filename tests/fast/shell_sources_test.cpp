@@ -130,6 +130,7 @@ TEST(ShellSources, NodesFarFromTheExactGeometryStay) {
     EXPECT_NEAR(made.projection->largest_distance, 1, 0.01);
     for (const auto& exception : made.projection->exceptions) {
       EXPECT_NEAR(std::hypot(exception.where.x, exception.where.y), 2, 0.01);
+      ASSERT_LT(exception.point, made.result.mesh.points.size());
       EXPECT_EQ(made.result.mesh.points[exception.point], exception.where);
     }
   }

@@ -92,8 +92,8 @@ void keep_open(const Sewn& sewn, const std::string& file, Topology& topology) {
   open.open = true;
   topology.all = open.shape;
   topology.open_text = fmt::format(
-      "{} holds no solid, and its faces, sewn within {:.3g}, enclose none: {}; close the surface "
-      "and make a solid of it.",
+      "{} holds no solid, and its faces, sewn with a tolerance of {:.3g}, enclose none: {}; close the "
+      "surface and make a solid of it.",
       file, sewn.gap, open_edges_text(topology, open.shape));
   topology.notes.push_back(topology.open_text);
   topology.solids.push_back(open);

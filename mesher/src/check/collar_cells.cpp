@@ -84,12 +84,12 @@ void add_wrong_mark(const MeshToCheck& to_check, Index tet, std::uint8_t kind, F
                              "a book (with an edge on a crease)"};
   const Point where =
       0.5 * (to_check.point(to_check.mesh.tets[tet][0]) + to_check.point(to_check.mesh.tets[tet][1]));
-  findings.add(guarantee::collar_cells, where, {tet},
-               "Tet {} at {} is marked as {} of a collar, but should be {}, because features that meet below "
-               "{:.6g} degrees form a crease; give the crease angle that the mesh was made with, or correct "
-               "the mark.",
-               tet, At{where}, names[std::min<std::size_t>(to_check.mesh.tet_collar[tet], 2)], names[kind],
-               to_check.options.bounds.crease_angle);
+  findings.add(
+      guarantee::collar_cells, where, {tet},
+      "Tet {} at {} is marked as {} of a collar, but should be {} (features that meet below {:.6g} "
+      "degrees form a crease); give the crease angle that the mesh was made with, or correct the mark.",
+      tet, At{where}, names[std::min<std::size_t>(to_check.mesh.tet_collar[tet], 2)], names[kind],
+      to_check.options.bounds.crease_angle);
 }
 
 }  // namespace

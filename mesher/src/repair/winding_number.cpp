@@ -38,11 +38,10 @@ WindingNumber::WindingNumber(std::vector<WeightedTriangle> triangles) {
   triangles_.reserve(triangles.size());
   for (const SpatialKey& key : keys) triangles_.push_back(triangles[key.item]);
   if (keys.empty()) return;
-  std::vector<Index> numbers;
-  numbers.reserve(triangles.size());
-  for (const WeightedTriangle& t : triangles) numbers.push_back(t.number);
-  std::ranges::sort(numbers);
-  numbers_are_shared_ = std::ranges::adjacent_find(numbers) != numbers.end();
+  numbered_.reserve(triangles_.size());
+  for (const WeightedTriangle& t : triangles_)
+    numbered_.push_back({t.number, static_cast<Index>(numbered_.size())});
+  std::ranges::sort(numbered_);
   constexpr Index leaf_size = 8;
   tree_.add(
       0, static_cast<Index>(keys.size()), leaf_size, spatial_splits(keys),
@@ -54,7 +53,7 @@ WindingNumber::WindingNumber(std::vector<WeightedTriangle> triangles) {
       });
 }
 
-WindingNumber::Summary::Summary(const Range& range) {
+WindingNumber::Summary::Summary(const Range& range) : first(range.first), end(range.first + range.count) {
   const std::span triangles = std::span(range.triangles).subspan(range.first, range.count);
   double total = 0;
   for (const WeightedTriangle& t : triangles) {
@@ -69,13 +68,13 @@ WindingNumber::Summary::Summary(const Range& range) {
     for (std::size_t r = 0; r < 3; ++r)
       for (std::size_t c = 0; c < 3; ++c) moment[3 * r + c] += arm[r] * weighted[c];
     for (const Point& corner : t.corners) radius = std::max(radius, distance(corner, centre));
-    least_number = std::min(least_number, t.number);
-    greatest_number = std::max(greatest_number, t.number);
   }
 }
 
 double WindingNumber::at(const Point& p, Index left_out) const {
-  return tree_.empty() ? 0 : at_node(0, p, left_out) / (4 * std::numbers::pi);
+  if (tree_.empty()) return 0;
+  const auto found = std::ranges::equal_range(numbered_, left_out, {}, &Numbered::number);
+  return at_node(0, p, {found.begin(), found.end()}) / (4 * std::numbers::pi);
 }
 
 bool WindingNumber::is_on_another(const Point& p, Index left_out) const {
@@ -95,11 +94,16 @@ bool WindingNumber::is_on_another(Index node, const Point& p, Index left_out) co
   return false;
 }
 
-double WindingNumber::at_node(Index node, const Point& p, Index left_out) const {
+// A far node with triangles that are left out is not taken together.
+double WindingNumber::at_node(Index node, const Point& p, std::span<const Numbered> left_out) const {
   const Summary& n = tree_.bounds(node);
   const Vector r = n.centre - p;
   const double distance = norm(r);
-  if (distance > far * n.radius && !may_leave_out(n, left_out)) {
+  const auto has_left_out = [&] {
+    const auto next = std::ranges::lower_bound(left_out, n.first, {}, &Numbered::place);
+    return next != left_out.end() && next->place < n.end;
+  };
+  if (distance > far * n.radius && !has_left_out()) {
     // Computes the first two terms of the expansion about the centre.
     const double cubed = distance * distance * distance;
     double trace = 0, along = 0;
@@ -113,7 +117,8 @@ double WindingNumber::at_node(Index node, const Point& p, Index left_out) const 
     return at_node(tree_.left(node), p, left_out) + at_node(tree_.right(node), p, left_out);
   double sum = 0;
   for (Index i = tree_.first(node); i < tree_.end(node); ++i)
-    if (triangles_[i].number != left_out) sum += triangles_[i].weight * solid_angle(triangles_[i], p);
+    if (left_out.empty() || triangles_[i].number != left_out[0].number)
+      sum += triangles_[i].weight * solid_angle(triangles_[i], p);
   return sum;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <span>
 #include <vector>
 
@@ -26,8 +27,8 @@ class WindingNumber {
 
   /// Returns the winding number at a point, leaving out triangles with the number `left_out`. At a point on a
   /// triangle that is left out, the result is the mean of the winding numbers on the triangle's two sides.
-  /// Cost: O(log n) unless the surface is crumpled around the point; with a number that several triangles
-  /// have, also linear in the triangles among which these lie scattered.
+  /// Cost: O(log n) unless the surface is crumpled around the point; times the number of triangles that are
+  /// left out if they are distant.
   double at(const Point& p, Index left_out = none) const;
 
   /// Returns whether the point is so close to a triangle with another number than `left_out` that rounding
@@ -45,22 +46,23 @@ class WindingNumber {
     double radius = 0;  // radius of the smallest ball around the centre that contains all corners
     Vector area{};      // sum of weight * area vectors
     std::array<double, 9> moment{};  // sum of weight * (centroid - centre) * (area vector)^T, row by row
-    Index least_number = none, greatest_number = 0;
+    Index first = 0, end = 0;        // the triangles
 
     Summary() = default;
     explicit Summary(const Range& range);
   };
 
-  double at_node(Index node, const Point& p, Index left_out) const;
+  /// The number of a triangle, and its place in `triangles_`.
+  struct Numbered {
+    Index number, place;
+    auto operator<=>(const Numbered&) const = default;
+  };
+
+  double at_node(Index node, const Point& p, std::span<const Numbered> left_out) const;
   bool is_on_another(Index node, const Point& p, Index left_out) const;
-  /// Returns whether some triangles of a node, far from p, may have to be left out.
-  bool may_leave_out(const Summary& node, Index left_out) const {
-    return numbers_are_shared_ && node.least_number <= left_out && left_out <= node.greatest_number;
-  }
 
   std::vector<WeightedTriangle> triangles_;  // in the order of the leaves
-  bool numbers_are_shared_ = false;  // whether several triangles have the same number; else a triangle that
-                                     // is left out is the one that the point lies on, and thus near
+  std::vector<Numbered> numbered_;           // sorted
   Hierarchy<Summary> tree_;
 };
 

@@ -347,7 +347,7 @@ bool ShapeRepair::approach(std::size_t most_vertices) {
       editor_.flip_around(v);
       changed = true;
     }
-    if (!changed) changed = approach_points(limit);
+    if (!changed && complex_.vertices.size() < limit) changed = approach_points(limit);
     if (!changed) break;
   }
   return complex_.vertices.size() > before;
