@@ -94,16 +94,15 @@ bool WindingNumber::is_on_another(Index node, const Point& p, Index left_out) co
   return false;
 }
 
-// A far node with triangles that are left out is not taken together.
 double WindingNumber::at_node(Index node, const Point& p, std::span<const Numbered> left_out) const {
   const Summary& n = tree_.bounds(node);
+  const auto from = std::ranges::lower_bound(left_out, n.first, {}, &Numbered::place),
+             to = std::ranges::lower_bound(left_out, n.end, {}, &Numbered::place);
+  left_out = {from, to};  // those below this node
+  if (left_out.size() == n.end - n.first) return 0;
   const Vector r = n.centre - p;
   const double distance = norm(r);
-  const auto has_left_out = [&] {
-    const auto next = std::ranges::lower_bound(left_out, n.first, {}, &Numbered::place);
-    return next != left_out.end() && next->place < n.end;
-  };
-  if (distance > far * n.radius && !has_left_out()) {
+  if (distance > far * n.radius && left_out.empty()) {
     // Computes the first two terms of the expansion about the centre.
     const double cubed = distance * distance * distance;
     double trace = 0, along = 0;

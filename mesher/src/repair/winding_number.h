@@ -27,8 +27,8 @@ class WindingNumber {
 
   /// Returns the winding number at a point, leaving out triangles with the number `left_out`. At a point on a
   /// triangle that is left out, the result is the mean of the winding numbers on the triangle's two sides.
-  /// Cost: O(log n) unless the surface is crumpled around the point; times the number of triangles that are
-  /// left out if they are distant.
+  /// Cost: O(log n) unless the surface is crumpled around the point; also grows with the number of distant
+  /// triangles that are left out and have others near them.
   double at(const Point& p, Index left_out = none) const;
 
   /// Returns whether the point is so close to a triangle with another number than `left_out` that rounding
