@@ -98,7 +98,7 @@ double WindingNumber::at_node(Index node, const Point& p, std::span<const Number
   const Summary& n = tree_.bounds(node);
   const auto from = std::ranges::lower_bound(left_out, n.first, {}, &Numbered::place),
              to = std::ranges::lower_bound(left_out, n.end, {}, &Numbered::place);
-  left_out = {from, to};  // those below this node
+  left_out = {from, to};  // only below this node
   if (left_out.size() == n.end - n.first) return 0;
   const Vector r = n.centre - p;
   const double distance = norm(r);
