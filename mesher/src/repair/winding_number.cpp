@@ -41,7 +41,7 @@ WindingNumber::WindingNumber(std::vector<WeightedTriangle> triangles) {
   numbered_.reserve(triangles_.size());
   for (const WeightedTriangle& t : triangles_)
     numbered_.push_back({t.number, static_cast<Index>(numbered_.size())});
-  std::ranges::sort(numbered_);
+  std::ranges::stable_sort(numbered_, {}, &Numbered::number);
   constexpr Index leaf_size = 8;
   tree_.add(
       0, static_cast<Index>(keys.size()), leaf_size, spatial_splits(keys),

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <compare>
 #include <span>
 #include <vector>
 
@@ -55,14 +54,13 @@ class WindingNumber {
   /// The number of a triangle, and its place in `triangles_`.
   struct Numbered {
     Index number, place;
-    auto operator<=>(const Numbered&) const = default;
   };
 
   double at_node(Index node, const Point& p, std::span<const Numbered> left_out) const;
   bool is_on_another(Index node, const Point& p, Index left_out) const;
 
   std::vector<WeightedTriangle> triangles_;  // in the order of the leaves
-  std::vector<Numbered> numbered_;           // sorted
+  std::vector<Numbered> numbered_;           // sorted by numbers, then by places
   Hierarchy<Summary> tree_;
 };
 
