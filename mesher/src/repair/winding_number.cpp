@@ -73,8 +73,9 @@ WindingNumber::Summary::Summary(const Range& range) : first(range.first), end(ra
 
 double WindingNumber::at(const Point& p, Index left_out) const {
   if (tree_.empty()) return 0;
-  const auto found = std::ranges::equal_range(numbered_, left_out, {}, &Numbered::number);
-  return at_node(0, p, {found.begin(), found.end()}) / (4 * std::numbers::pi);
+  const auto from = std::ranges::lower_bound(numbered_, left_out, {}, &Numbered::number),
+             to = std::ranges::upper_bound(numbered_, left_out, {}, &Numbered::number);
+  return at_node(0, p, {from, to}) / (4 * std::numbers::pi);
 }
 
 bool WindingNumber::is_on_another(const Point& p, Index left_out) const {
